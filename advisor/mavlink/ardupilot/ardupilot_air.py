@@ -39,12 +39,12 @@ def air(tables: Mapping[str, RecordTable], interrupted: bool) -> AirRecords:
     speed, said = _airspeed(tables, interrupted)
     descent = _first(tables, [(f"{family}1", "VD") for family in families(tables)])
     climb = _first(tables, [("BARO", "CRt")]) if descent is None else (descent[0], -descent[1])
-    found = {"climb": climb, "throttle": _first(tables, [("CTUN", "ThO")])}
+    by_field = {"climb": climb, "throttle": _first(tables, [("CTUN", "ThO")])}
     others = [
         # The orders of one record are consecutive: CTUN may hold air speed and throttle.
-        {"order": one[0].order + place, "time_usec": one[0].time_us, field: one[1]}
-        for place, (field, one) in enumerate(found.items(), start=2)
-        if one is not None
+        {"order": series[0].order + place, "time_usec": series[0].time_us, field: series[1]}
+        for place, (field, series) in enumerate(by_field.items(), start=2)
+        if series is not None
     ]
     return AirRecords([*speed, *others], said)
 

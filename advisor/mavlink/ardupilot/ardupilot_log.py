@@ -83,7 +83,7 @@ def read_dataflash(path: Path, wanted: Iterable[str] | None = None) -> Iterator[
     apart = (name for names in SENSORS_APART.values() for name in names)
     names = None if wanted is None else set(wanted)
     is_log, newest = False, -1
-    known = Known()
+    facts = Known()
     every = (*_RECORDS, _OF_PX4[0], *apart)
     for stretch in read_stretches(path, every, _is_read, _OF_WHOLE_LOG, _UNDIVIDED):
         tables = {name: _believable(stretch.tables.pop(name)) for name in list(stretch.tables)}
@@ -93,7 +93,7 @@ def read_dataflash(path: Path, wanted: Iterable[str] | None = None) -> Iterator[
                 f"{path.name} is a log of PX4 before 2017, which is not read.",
                 "Give a .tlog of the flight, or fly with a firmware that writes a .ulg.",
             )
-        messages, known = _messages(tables, Known() if stretch.begins == -math.inf else known)
+        messages, facts = _messages(tables, Known() if stretch.begins == -math.inf else facts)
         if messages is not None:
             is_log = True
             for batch in _batch(messages, names, stretch):
@@ -118,20 +118,20 @@ def _after(newest: int, batch: Sequence[Columns], columns: Columns) -> Columns:
     return replace(columns, order=columns.order + late_by) if newest >= 0 and late_by > 0 else columns
 
 
-def _messages(stored: Mapping[str, RecordTable], known: Known) -> tuple[Iterator[Columns] | None, Known]:
+def _messages(stored: Mapping[str, RecordTable], facts: Known) -> tuple[Iterator[Columns] | None, Known]:
     """Return the messages of a stretch, and the facts of its log; no messages without attitude, inertial
     sensors and outputs.
     """
-    read = in_todays_names(stored, known.epoch_s)
+    read = in_todays_names(stored, facts.epoch_s)
     tables = {
         name: table
         for name, table in read.tables.items()
         if name in _RECORDS and _RECORDS[name] <= table.fields.keys()
     }
     if not tables.keys() & {"ATT", "IMU", "RCOU"}:
-        return None, known
-    translation = Translation(Clocked(tables, read.epoch_s), known)
-    return translation.columns(), translation.known
+        return None, facts
+    translation = Translation(Clocked(tables, read.epoch_s), facts)
+    return translation.columns(), translation.facts
 
 
 def _believable(table: RecordTable) -> RecordTable:

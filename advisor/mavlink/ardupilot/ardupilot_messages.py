@@ -47,12 +47,12 @@ class Known:
 class Translation:
     """Conversion of the records in one stretch of a log."""
 
-    def __init__(self, read: Clocked, known: Known) -> None:
+    def __init__(self, read: Clocked, facts: Known) -> None:
         self._tables = dict(read.tables)
         self._said: list[Said] = []
         if read.epoch_s:
             self._said.append(Said(0, 0, "Stamps count from 1970, so times are given since the first record"))
-        healthy: dict[str, set[str]] = dict(known.health)
+        healthy: dict[str, set[str]] = dict(facts.health)
         silences: dict[str, list[Silence]] = {}
         for name, kind in KINDS.items():
             if name in self._tables:
@@ -63,7 +63,7 @@ class Translation:
                 if not kind.needs_health:
                     self._said += changes(table, kind.quantity, kind.noun)
                 elif kind.quantity:
-                    silences[name] = silences_in(every, table, known.silences.get(name, []))
+                    silences[name] = silences_in(every, table, facts.silences.get(name, []))
                     self._said += said(every, table, kind.quantity, healthy[name], silences[name], kind.noun)
         self._said += said_family(self._tables)
         self._tables = {name: table for name, table in self._tables.items() if len(table)}
@@ -71,8 +71,8 @@ class Translation:
             self._tables["PARM"] = in_todays_parameters(self._tables["PARM"])
         self._said += [*health(read.tables), *sweeps(self._tables)]
         first_s = float(read.epoch_s) or gps_time_base_s(read.tables.get("GPS"))
-        self._base_s = first_s if known.base_s is None else known.base_s
-        self.known = Known(read.epoch_s, self._base_s, healthy, silences)
+        self._base_s = first_s if facts.base_s is None else facts.base_s
+        self.facts = Known(read.epoch_s, self._base_s, healthy, silences)
         """Facts of the whole log after this stretch."""
         self._system = system_of(self._tables)
 
@@ -210,10 +210,10 @@ class Translation:
 
     def _vfr_hud(self) -> Iterator[Columns]:
         """Yield air speed, climb rate and throttle, each at the stamps of its own record."""
-        found = air(self._tables, bool(self.known.silences.get("ARSP")))
-        self._said += found.said
-        if found.records:
-            fields: dict[str, ArrayLike] = dict(air_data(*found.records))
+        measured = air(self._tables, bool(self.facts.silences.get("ARSP")))
+        self._said += measured.said
+        if measured.records:
+            fields: dict[str, ArrayLike] = dict(air_data(*measured.records))
             order = np.asarray(fields.pop("order"))
             yield self._made("VFR_HUD", order, np.asarray(fields["time_usec"]), fields)
 
@@ -242,9 +242,7 @@ class Translation:
         msg = self._tables.get("MSG")
         own = [] if msg is None else zip(msg.order, msg.time_us, msg.fields["Message"].tolist(), strict=True)
         # A record's own messages use its order and the next one.
-        read = [
-            (one.order + 2 + k, one.time_us, READER + one.text.encode()) for k, one in enumerate(self._said)
-        ]
+        read = [(s.order + 2 + k, s.time_us, READER + s.text.encode()) for k, s in enumerate(self._said)]
         texts = np.array(
             [*own, *lost_texts(self._tables), *read],
             dtype=[("order", "i8"), ("time_us", "i8"), ("text", "S256")],

@@ -108,11 +108,11 @@ def _today(name: bytes) -> bytes:
 
 
 def _stick_functions(stored: Mapping[str, float]) -> dict[bytes, float]:
-    found = {}
+    functions = {}
     for parameter, (output, function) in _STICKS.items():
         number = int(stored.get(parameter, output))
-        found[f"SERVO{number}_FUNCTION".encode()] = float(function)
-    return found
+        functions[f"SERVO{number}_FUNCTION".encode()] = float(function)
+    return functions
 
 
 def version_fields(ver: RecordTable) -> dict[str, ArrayLike]:

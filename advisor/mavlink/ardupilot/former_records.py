@@ -82,11 +82,11 @@ def _renamed(name: str, table: RecordTable) -> RecordTable:
             fields["TimeUS"] = 1000 * fields[stated].astype(np.int64)
     renamed = RENAMED.get(name, {})
     channels = name in ("RCOU", "RCIN")
-    found = {}
+    present = {}
     for field, values in fields.items():
         numbered = _CHANNEL.fullmatch(field) if channels else None
-        found[f"C{numbered[1]}" if numbered else renamed.get(field, field)] = values
-    return replace(table, fields=found)
+        present[f"C{numbered[1]}" if numbered else renamed.get(field, field)] = values
+    return replace(table, fields=present)
 
 
 def _timed(tables: Mapping[str, RecordTable]) -> dict[str, RecordTable]:
@@ -98,13 +98,13 @@ def _timed(tables: Mapping[str, RecordTable]) -> dict[str, RecordTable]:
     time_us = np.concatenate([table.time_us for table in stamped])
     rows = np.argsort(order)
     order, time_us = order[rows], time_us[rows]
-    found = {}
+    timed = {}
     for name, table in tables.items():
         if "TimeUS" not in table.fields:
             before = np.searchsorted(order, table.order, side="right") - 1
             table = _at(table, time_us[np.maximum(before, 0)])
-        found[name] = table
-    return found
+        timed[name] = table
+    return timed
 
 
 def _at(table: RecordTable, time_us: IntArray) -> RecordTable:
@@ -113,16 +113,16 @@ def _at(table: RecordTable, time_us: IntArray) -> RecordTable:
 
 def _joined(tables: Mapping[str, RecordTable]) -> dict[str, RecordTable]:
     """Return the tables with former records of further sensors merged, numbered in field I."""
-    found = dict(tables)
+    joined = dict(tables)
     for name, apart in SENSORS_APART.items():
-        further = [found.pop(other) for other in apart if other in found]
+        further = [joined.pop(other) for other in apart if other in joined]
         if not further:
             continue
-        sensors = ([found[name]] if name in found else []) + further
+        sensors = ([joined[name]] if name in joined else []) + further
         shared = set.intersection(*(set(table.fields) for table in sensors)) - {"I"}
         numbers = [np.full(len(table), number, np.int64) for number, table in enumerate(sensors)]
         order = np.concatenate([table.order for table in sensors])
         rows = np.argsort(order)
         fields = {f: np.concatenate([table.fields[f] for table in sensors])[rows] for f in shared}
-        found[name] = RecordTable(order[rows], {**fields, "I": np.concatenate(numbers)[rows]})
-    return found
+        joined[name] = RecordTable(order[rows], {**fields, "I": np.concatenate(numbers)[rows]})
+    return joined

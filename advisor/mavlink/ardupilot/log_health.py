@@ -49,11 +49,11 @@ def health(tables: Mapping[str, RecordTable]) -> Iterator[Said]:
 
 def _clock_error(gps: RecordTable) -> float | None:
     """Return the relative error of the autopilot's clock; None if GPS time shows no error."""
-    known = gps.fields["GWk"] > 0
-    if np.count_nonzero(known) < _FEWEST:
+    dated = gps.fields["GWk"] > 0
+    if np.count_nonzero(dated) < _FEWEST:
         return None
-    true_s = 604_800.0 * gps.fields["GWk"][known] + 1e-3 * gps.fields["GMS"][known]
-    boot_s = 1e-6 * gps.time_us[known]
+    true_s = 604_800.0 * gps.fields["GWk"][dated] + 1e-3 * gps.fields["GMS"][dated]
+    boot_s = 1e-6 * gps.time_us[dated]
     true_s, boot_s = true_s - true_s.mean(), boot_s - boot_s.mean()
     power = float(true_s @ true_s)
     if power == 0.0:

@@ -65,8 +65,8 @@ def flown(
     state = np.zeros((len(numbers), len(table)), dtype=np.int64)
     for row, number in enumerate(numbers):
         own = instance == number
-        known = latest(table.order, table.order[own], worth[own])
-        state[row] = np.where(np.isnan(known), worth[own][0], known)
+        newest = latest(table.order, table.order[own], worth[own])
+        state[row] = np.where(np.isnan(newest), worth[own][0], newest)
     place = np.argmax(state, axis=0)
     if primary is not None:
         at = np.searchsorted(numbers, np.nan_to_num(primary, nan=-1.0)).clip(0, len(numbers) - 1)
@@ -125,12 +125,12 @@ def silences_in(every: RecordTable, table: RecordTable, before: Sequence[Silence
     before
         Times without a healthy sensor in the stretch before, of which the last may continue.
     """
-    found = []
+    silences = []
     for first, last in _silent(every, table):
         here_us, end_us = every.time_us[[first, last]].tolist()
-        begin_us = next((one.begin_us for one in before if one.begin_us <= here_us <= one.end_us), here_us)
-        found.append(Silence(begin_us, end_us, int(every.order[last])))
-    return found
+        begin_us = next((s.begin_us for s in before if s.begin_us <= here_us <= s.end_us), here_us)
+        silences.append(Silence(begin_us, end_us, int(every.order[last])))
+    return silences
 
 
 def _doubts(every: RecordTable, quantity: str, health: Collection[str]) -> list[Said]:
@@ -173,12 +173,12 @@ def _silent(every: RecordTable, table: RecordTable) -> list[tuple[int, int]]:
     # A stretch without a healthy sensor is longer than the interval of the records of the sensor in use.
     usual_us = max(float(np.median(np.diff(table.time_us))), 1.0) if len(table) > 1 else 1.0
     edges = np.concatenate(([every.time_us[0] - usual_us], table.time_us, [every.time_us[-1] + usual_us]))
-    found = []
+    stretches = []
     for gap in np.flatnonzero(np.diff(edges) > 3.0 * usual_us).tolist():
         within = np.flatnonzero((every.time_us > edges[gap]) & (every.time_us < edges[gap + 1]))
         if len(within):
-            found.append((int(within[0]), int(within[-1])))
-    return found
+            stretches.append((int(within[0]), int(within[-1])))
+    return stretches
 
 
 def _numbers(table: RecordTable) -> IntArray:

@@ -226,7 +226,7 @@ class Link:
         """Present health of the link."""
         now_s = time.monotonic()
         counters = self._intake.counters
-        found = LinkStatistics(
+        statistics = LinkStatistics(
             connected=self._line.is_open,
             vehicle=self._intake.vehicle,
             messages=counters.messages,
@@ -243,7 +243,7 @@ class Link:
             recorded_bytes=self._recorder.bytes_written if self._recorder else 0,
             recording_problem=self._recorder.problem if self._recorder else None,
         )
-        return self._decoding.counted(found) if self._decoding is not None else found
+        return self._decoding.counted(statistics) if self._decoding is not None else statistics
 
     # The methods below run in the reader thread.
 

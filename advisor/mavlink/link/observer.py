@@ -68,10 +68,10 @@ class LinkObserver:
                 if not connection.poll(LOOK_EVERY_S):
                     self._wait_in_vain()
                     continue
-                told = connection.recv()
-                assert isinstance(told, Told)
+                answer = connection.recv()
+                assert isinstance(answer, Told)
                 self._health.answered()
-                self._health.take(told.statistics)
+                self._health.take(answer.statistics)
                 self._tell(self._health.statistics)
 
     def _wait_in_vain(self) -> None:

@@ -70,19 +70,19 @@ def running_alone() -> Iterator[RunningLink]:
 
 def _state(door: Door) -> Literal["answers", "hangs", "gone"]:
     """Return whether the process at an address answers within ``ANSWERS_WITHIN_S``."""
-    found: list[Literal["answers", "gone"]] = []
+    states: list[Literal["answers", "gone"]] = []
 
     def knock() -> None:
         try:
             door.open().close()
-            found.append("answers")
+            states.append("answers")
         except (OSError, EOFError):
-            found.append("gone")
+            states.append("gone")
 
     knocking = Thread(target=knock, daemon=True)
     knocking.start()
     knocking.join(ANSWERS_WITHIN_S)
-    return found[0] if found else "hangs"
+    return states[0] if states else "hangs"
 
 
 def _read(path: Path) -> RunningLink:

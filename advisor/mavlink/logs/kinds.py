@@ -59,12 +59,12 @@ def recognised(beginning: bytes) -> Found | None:
     """
     for has_magic in (True, False):
         there = [
-            Found(one, at)
-            for one in FORMATS
-            if one.has_magic is has_magic and (at := one.begins_at(beginning)) is not None
+            Found(log_format, at)
+            for log_format in FORMATS
+            if log_format.has_magic is has_magic and (at := log_format.begins_at(beginning)) is not None
         ]
         if there:
-            return min(there, key=lambda found: found.starts_at)
+            return min(there, key=lambda origin: origin.starts_at)
     return None
 
 
@@ -88,8 +88,8 @@ def refusal(name: str, beginning: bytes) -> Problem:
     for magic, code, kind, fix in _OTHERS:
         if beginning.removeprefix(b"\xef\xbb\xbf").startswith(magic):
             return Problem(code, f"{name} {kind}, which the advisor does not read.", fix)
-    for one in FORMATS:
-        if refused := one.refusal(name, beginning):
+    for log_format in FORMATS:
+        if refused := log_format.refusal(name, beginning):
             return refused
     archive = next((kind for magic, kind in _ARCHIVES.items() if beginning.startswith(magic)), None)
     if archive is not None or beginning.startswith(_PACKED_INSIDE):
@@ -98,5 +98,5 @@ def refusal(name: str, beginning: bytes) -> Problem:
             f"{name} is packed{f' with {archive}' if archive else ' twice'}.",
             "Unpack it and give the log inside it.",
         )
-    holds = f"{', '.join(one.holds for one in FORMATS[:-1])} or {FORMATS[-1].holds}"
+    holds = f"{', '.join(log_format.holds for log_format in FORMATS[:-1])} or {FORMATS[-1].holds}"
     return Problem("not_a_tlog", f"{name} holds no {holds} ({len(beginning)} bytes read).", GIVE)

@@ -79,19 +79,19 @@ def _messages(
     with unpacked(path, beginning) as log:
         if log is not path:
             beginning = beginning_of(log)
-        found = recognised(beginning)
-        if found is None:
+        origin = recognised(beginning)
+        if origin is None:
             raise UnusableInputError.of([refusal(log.name, beginning)])
-        if columns is not None and found.format.read_columns is not None:
-            yield from found.format.read_columns(log, columns)
+        if columns is not None and origin.format.read_columns is not None:
+            yield from origin.format.read_columns(log, columns)
             return
-        for number, batch in enumerate(found.format.read(log, wanted, found.starts_at, scanner)):
-            yield [_skipped(found, batch), *batch] if found.starts_at and number == 0 else batch
+        for number, batch in enumerate(origin.format.read(log, wanted, origin.starts_at, scanner)):
+            yield [_skipped(origin, batch), *batch] if origin.starts_at and number == 0 else batch
 
 
-def _skipped(found: Found, first: list[Columns]) -> Columns:
+def _skipped(origin: Found, first: list[Columns]) -> Columns:
     """Return a note about bytes before the first record, placed before the first messages."""
-    text = f"{READER.decode()}{found.starts_at} bytes in front of the first record were skipped"
+    text = f"{READER.decode()}{origin.starts_at} bytes in front of the first record were skipped"
     return message(
         "STATUSTEXT",
         first[0].system,

@@ -41,8 +41,8 @@ def stated_by_file(batches: Iterable[Sequence[Columns]]) -> list[Columns]:
     by_sender = sorted(sent, key=lambda c: (c.system, c.component))
     return [
         _as_messages(list(of_one), values)
-        for _, one in groupby(by_sender, key=lambda c: (c.system, c.component))
-        for of_one in [list(one)]
+        for _, group in groupby(by_sender, key=lambda c: (c.system, c.component))
+        for of_one in [list(group)]
         if (values := dict(_parameters_of(of_one)))
     ]
 

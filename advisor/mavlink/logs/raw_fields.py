@@ -75,13 +75,13 @@ def _of_records(log: Path, names: Collection[str]) -> dict[str, RawTable]:
     for stretch in read_stretches(log, names, length=np.inf):
         for name, table in stretch.tables.items():
             parts.setdefault(name, []).append(table)
-    found: dict[str, RawTable] = {}
+    raw_tables: dict[str, RawTable] = {}
     for name, tables in parts.items():
         for number, table in _instances(max(tables, key=len)):
             t = _stamp_s(table.fields)
             if t is not None:
-                found[f"{name}[{number}]" if number else name] = _raw(t, table.fields)
-    return found
+                raw_tables[f"{name}[{number}]" if number else name] = _raw(t, table.fields)
+    return raw_tables
 
 
 def _instances(table: RecordTable) -> Iterator[tuple[int, RecordTable]]:

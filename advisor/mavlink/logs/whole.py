@@ -62,9 +62,9 @@ def read_whole_log(
         return
     is_tlog = first[0].carrier == "telemetry"
     telling = list(open_log(path, ["HEARTBEAT", *_STATE], None, columns)) if is_tlog else [first]
-    known, notes = _stated(telling), []
-    if not known:
-        lender, known = _lent(others)
+    stated, notes = _stated(telling), []
+    if not stated:
+        lender, stated = _lent(others)
         if lender is not None:
             notes.append(
                 "The log states no parameters of its servo outputs. "
@@ -75,7 +75,7 @@ def read_whole_log(
         notes.append(
             f"Vehicle {flew.system} is followed: it alone was armed. Another vehicle was heard first"
         )
-    yield [*_in_front(first, [*([flew] if flew else []), *known], notes), *first]
+    yield [*_in_front(first, [*([flew] if flew else []), *stated], notes), *first]
     yield from batches
 
 
@@ -101,7 +101,7 @@ def _flew_though_heard_later(batches: Iterable[Sequence[Columns]]) -> Columns | 
 def _stated(batches: Iterable[Sequence[Columns]]) -> list[Columns]:
     """Return the first value of each parameter of the servo outputs, one message each, by sender."""
     heard: set[tuple[int, int, str]] = set()
-    found: list[Columns] = []
+    stated: list[Columns] = []
     all_heard = list(batches)
     singly = [c for batch in all_heard for c in batch if c.name == "PARAM_VALUE"]
     for columns in [*singly, *stated_by_file(all_heard)]:
@@ -111,35 +111,35 @@ def _stated(batches: Iterable[Sequence[Columns]]) -> list[Columns]:
             rows[row] = tells_of_outputs(name) and key not in heard
             heard.add(key)
         if rows.any():
-            found.append(cut(columns, rows))
-    return found
+            stated.append(cut(columns, rows))
+    return stated
 
 
 def _lent(others: Sequence[Path]) -> tuple[Path | None, list[Columns]]:
     """Return the first log that states parameters, with the parameters; None without such a log."""
     for other in others:
         try:
-            known = _stated(open_log(other, _STATE))
+            stated = _stated(open_log(other, _STATE))
         except UnusableInputError:
             continue
-        if known:
-            return other, known
+        if stated:
+            return other, stated
     return None, []
 
 
-def _in_front(first: Sequence[Columns], known: Sequence[Columns], notes: Sequence[str]) -> list[Columns]:
+def _in_front(first: Sequence[Columns], stated: Sequence[Columns], notes: Sequence[str]) -> list[Columns]:
     """Return known messages and notes about them, before the first messages of a log."""
     begins = min(int(c.order[0]) for c in first)
     began_s = min(float(c.arrival_s[0]) for c in first)
-    place = begins - sum(map(len, known)) - len(notes)
+    place = begins - sum(map(len, stated)) - len(notes)
     moved: list[Columns] = []
-    for columns in known:
+    for columns in stated:
         order = np.arange(place, place + len(columns))
         place += len(columns)
         moved.append(replace(columns, order=order, arrival_s=np.full(len(order), began_s)))
     if not notes:
         return moved
-    told = message(
+    statustext = message(
         "STATUSTEXT",
         first[0].system,
         np.arange(place, begins),
@@ -147,4 +147,4 @@ def _in_front(first: Sequence[Columns], known: Sequence[Columns], notes: Sequenc
         {"severity": 6, "text": np.array([READER + note.encode() for note in notes])},
         first[0].carrier,
     )
-    return [*moved, told]
+    return [*moved, statustext]

@@ -40,8 +40,8 @@ Series = tuple[IntArray, FloatArray]
 def air(topics: Topics) -> tuple[list[TimedMessages], list[str]]:
     """Return VFR_HUD and WIND_COV, and sentences about the source of the air speed."""
     speed, said = _airspeed(topics)
-    found = {"climb": _climb(topics), "throttle": _throttle(topics)}
-    records = [{"time_usec": one[0], name: one[1]} for name, one in found.items() if one is not None]
+    by_field = {"climb": _climb(topics), "throttle": _throttle(topics)}
+    records = [{"time_usec": pair[0], name: pair[1]} for name, pair in by_field.items() if pair is not None]
     records = [*([speed] if speed is not None else []), *records]
     blown = _wind(topics)
     if not records:
@@ -94,10 +94,10 @@ def _calibrated(speed: Topic, validated: Topic | None) -> Speed:
     """Return the calibrated air speed (indicated speed times the validator's scale), with the true one."""
     scale = 1.0 if _CALIBRATED in speed else _scale(validated)
     fields = {"airspeed": _CALIBRATED if _CALIBRATED in speed else _INDICATED, "true_airspeed": _TRUE}
-    found = {
+    speeds = {
         name: scale * speed[field].astype(np.float64) for name, field in fields.items() if field in speed
     }
-    return {"time_usec": sampled_us(speed), **found}
+    return {"time_usec": sampled_us(speed), **speeds}
 
 
 def _scale(validated: Topic | None) -> float:

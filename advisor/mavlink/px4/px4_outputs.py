@@ -40,7 +40,7 @@ class Outputs:
     """Servo outputs of a log, with findings about them."""
 
     messages: Sequence[TimedMessages]
-    found: Mapping[str, float]
+    as_parameters: Mapping[str, float]
     """Findings about the outputs in the form of parameters."""
     said: Sequence[str] = ()
     """Sentences for the user about the source of the outputs."""
@@ -57,7 +57,7 @@ def outputs(topics: Topics, parameters: Mapping[str, float]) -> Outputs:
             senses = followers(topic, command)
             if senses and best((topic, command.topic)) is topic:
                 numbered = {f"{FOLLOWS_PITCH}{16 * port + k}": sense for k, sense in senses.items()}
-                return Outputs([_of_instance(n, one) for n, one in enumerate(moving)], numbered)
+                return Outputs([_of_instance(n, topic) for n, topic in enumerate(moving)], numbered)
     if commands and _varies(commands[0].axes["pitch"]):
         pitch = {1: 1500.0 + 500.0 * commands[0].axes["pitch"]}
         pulses = _pulses(0, published_us(commands[0].topic), pitch)
@@ -123,11 +123,11 @@ def _assigned(instances: Sequence[Topic], parameters: Mapping[str, float]) -> di
         used = {k for k in OUTPUTS if parameters.get(f"{group}_FUNC{k}")}
         for n, topic in enumerate(instances):
             agreements.append((sum(-1 if k in used else 1 for k in OUTPUTS if _moves(topic, k)), bank, n))
-    found: dict[int, int] = {}
+    assigned: dict[int, int] = {}
     for _, bank, n in sorted(agreements):
-        if bank not in found and n not in found.values():
-            found[bank] = n
-    return {bank: instances[n] for bank, n in found.items()}
+        if bank not in assigned and n not in assigned.values():
+            assigned[bank] = n
+    return {bank: instances[n] for bank, n in assigned.items()}
 
 
 def _of_instance(port: int, topic: Topic) -> TimedMessages:
@@ -176,23 +176,23 @@ class Command:
 def pitch_commands(topics: Topics) -> list[Command]:
     """Return the topics with the commands, the preferred first. For a VTOL aircraft, the wing's topic is
     last."""
-    found = []
+    commands = []
     for topic in topics.get("actuator_controls_0", []):
         axes = dict(zip(("roll", "pitch", "yaw", "throttle"), vector(topic, "control", 4), strict=True))
-        found.append(Command("actuator_controls_0", topic, axes))
+        commands.append(Command("actuator_controls_0", topic, axes))
     for topic in topics.get("vehicle_torque_setpoint", []):
         axes = dict(zip(("roll", "pitch", "yaw"), vector(topic, "xyz", 3), strict=True))
-        found.append(Command("vehicle_torque_setpoint", topic, axes))
-    return found
+        commands.append(Command("vehicle_torque_setpoint", topic, axes))
+    return commands
 
 
 def followers(outputs: Topic, command: Command) -> dict[int, float]:
     """Return 1.0 for each output that follows the pitch command, -1.0 for the opposite, by the output's
     number."""
-    at, known = published_us(outputs), published_us(command.topic)
-    told = {name: np.interp(at, known, values) for name, values in command.axes.items()}
-    inside = (at >= known[0]) & (at <= known[-1]) & np.all(np.isfinite([*told.values()]), axis=0)
-    axes = {name: values[inside] for name, values in told.items()}
+    at, sent_us = published_us(outputs), published_us(command.topic)
+    orders = {name: np.interp(at, sent_us, values) for name, values in command.axes.items()}
+    inside = (at >= sent_us[0]) & (at <= sent_us[-1]) & np.all(np.isfinite([*orders.values()]), axis=0)
+    axes = {name: values[inside] for name, values in orders.items()}
     pitch = axes.pop("pitch")
     if len(pitch) < _LEAST_SAMPLES or not np.ptp(pitch) > 0.0:
         return {}

@@ -121,6 +121,6 @@ def rate_hz(topic: Topic) -> float:
 
 def best(candidates: Iterable[Topic | None]) -> Topic | None:
     """Return the first topic that is fast enough, else the fastest topic; None without a topic."""
-    found = [topic for topic in candidates if topic is not None]
-    fast = [topic for topic in found if rate_hz(topic) >= ENOUGH_HZ]
-    return fast[0] if fast else max(found, key=rate_hz, default=None)
+    topics = [topic for topic in candidates if topic is not None]
+    fast = [topic for topic in topics if rate_hz(topic) >= ENOUGH_HZ]
+    return fast[0] if fast else max(topics, key=rate_hz, default=None)

@@ -198,7 +198,7 @@ def translate(log: Any, topics: Topics, chosen: Sequence[str] = ()) -> list[Time
         px4_vehicle.heartbeat(topics, parameters, start_us),
         *px4_vehicle.vtol_states(topics),
         *px4_vehicle.version(log, start_us),
-        *px4_vehicle.stated(log, moved.found, start_us),
+        *px4_vehicle.stated(log, moved.as_parameters, start_us),
         *px4_vehicle.remarks([*chosen, *said, *moved.said, *px4_vehicle.dropouts(log)], start_us),
         *messages,
     ]

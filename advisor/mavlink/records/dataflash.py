@@ -78,10 +78,10 @@ def gps_time_base_s(gps: RecordTable | None) -> float:
     """Return the time of boot, seconds since 1970, from the first fix with a GPS week; 0 without one."""
     if gps is None:
         return 0.0
-    known = np.flatnonzero(gps.fields["GWk"] > 0)
-    if not len(known):
+    dated = np.flatnonzero(gps.fields["GWk"] > 0)
+    if not len(dated):
         return 0.0
-    i = known[0]
+    i = dated[0]
     gps_epoch, leap_seconds = 315_964_800, 18
     week, in_week_s = int(gps.fields["GWk"][i]), int(gps.fields["GMS"][i]) / 1000
     return gps_epoch + 604_800 * week + in_week_s - leap_seconds - float(gps.time_us[i]) / 1e6

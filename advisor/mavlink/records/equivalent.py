@@ -117,8 +117,8 @@ def latest(at: IntArray, order: IntArray, values: NDArray[Any]) -> FloatArray:
     shape (n,)
         NaN before the first value.
     """
-    known = np.concatenate([[np.nan], np.asarray(values, dtype=np.float64)])
-    return known[np.searchsorted(order, at, side="right")]
+    padded = np.concatenate([[np.nan], np.asarray(values, dtype=np.float64)])
+    return padded[np.searchsorted(order, at, side="right")]
 
 
 def nearest(at_us: IntArray, time_us: IntArray) -> IntArray:

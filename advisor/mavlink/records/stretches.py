@@ -208,13 +208,13 @@ class _Collected:
         return tables
 
 
-def _merged(one: RecordTable, other: RecordTable) -> RecordTable:
+def _merged(table: RecordTable, other: RecordTable) -> RecordTable:
     """Return the records of two types with one name, in the order of the file, with the fields of both."""
-    order = np.concatenate([one.order, other.order])
+    order = np.concatenate([table.order, other.order])
     rows = np.argsort(order)
-    both = [name for name in one.fields if name in other.fields]
+    both = [name for name in table.fields if name in other.fields]
     return RecordTable(
-        order[rows], {name: np.concatenate([one.fields[name], other.fields[name]])[rows] for name in both}
+        order[rows], {name: np.concatenate([table.fields[name], other.fields[name]])[rows] for name in both}
     )
 
 

@@ -93,8 +93,8 @@ def _is_heard_again(
         return False
     senders[source, REPEATED] += 1
     senders[source, REPEATED_LATE_US] += ago_us
-    known = has_path and senders[source, _ECHO_RUN] >= _RUN
-    if not known or abs(ago_us - senders[source, _ECHO_LATE_US]) <= _STEADY_US:
+    is_established = has_path and senders[source, _ECHO_RUN] >= _RUN
+    if not is_established or abs(ago_us - senders[source, _ECHO_LATE_US]) <= _STEADY_US:
         senders[source, _ECHO], senders[source, _ECHO_US] = sequence, now_us
         senders[source, _ECHO_LATE_US], senders[source, _ECHO_NEW] = ago_us, 0
         senders[source, _ECHO_RUN] = senders[source, _ECHO_RUN] + 1 if has_path else 1

@@ -129,7 +129,7 @@ class FrameScanner:
 
     def _scan(self, data: bytes, final: bool) -> list[Columns]:
         stream = np.frombuffer(data, dtype=np.uint8)
-        found = np.empty((len(stream) // 8 + 1, kernel.FOUND_COLUMNS), dtype=np.int64)
+        frames = np.empty((len(stream) // 8 + 1, kernel.FOUND_COLUMNS), dtype=np.int64)
         rows, keep = kernel.scan(
             stream,
             final,
@@ -139,12 +139,12 @@ class FrameScanner:
             self._senders,
             self._packets,
             self._newest,
-            found,
+            frames,
         )
-        found = found[:rows]
+        frames = frames[:rows]
         if self._signatures is not None:
-            found = found[[self._believed(self._signatures, data, row) for row in found]]
-        columns = self._columns(stream, found)
+            frames = frames[[self._believed(self._signatures, data, row) for row in frames]]
+        columns = self._columns(stream, frames)
         self._tail = data[keep:]
         self._offset += keep
         return columns
@@ -158,17 +158,17 @@ class FrameScanner:
         self._refused[verdict] = self._refused.get(verdict, 0) + 1
         return False
 
-    def _columns(self, stream: NDArray[np.uint8], found: NDArray[np.int64]) -> list[Columns]:
+    def _columns(self, stream: NDArray[np.uint8], frames: NDArray[np.int64]) -> list[Columns]:
         """Sort the found frames by message and sender, keep their order, and decode them."""
-        if not len(found):
+        if not len(frames):
             return []
-        sender = found[:, kernel.KIND] * _SOURCES + found[:, kernel.SOURCE]
+        sender = frames[:, kernel.KIND] * _SOURCES + frames[:, kernel.SOURCE]
         by_sender = np.argsort(sender, kind="stable")
-        found, sender = found[by_sender], sender[by_sender]
-        edges = [0, *(np.flatnonzero(np.diff(sender)) + 1).tolist(), len(found)]
+        frames, sender = frames[by_sender], sender[by_sender]
+        edges = [0, *(np.flatnonzero(np.diff(sender)) + 1).tolist(), len(frames)]
         columns = []
         for first, last in pairwise(edges):
-            group = found[first:last]
+            group = frames[first:last]
             kind, source = divmod(int(sender[first]), _SOURCES)
             definition = self._definitions[kind]
             payloads = np.zeros((len(group), definition.layout.itemsize), dtype=np.uint8)

@@ -77,9 +77,9 @@ class FrameCutter:
     def _skip(self, buffer: bytes, i: int) -> int:
         """Drop the byte at ``i``, and return the next place where a frame may start."""
         v1, v2 = buffer.find(MAGIC_V1, i + 1), buffer.find(MAGIC_V2, i + 1)
-        found = [k for k in (v1, v2) if k >= 0]
+        places = [k for k in (v1, v2) if k >= 0]
         self._in_step = False
-        return min(found) if found else len(buffer)
+        return min(places) if places else len(buffer)
 
     def _check(self, buffer: bytes, i: int, total: int) -> Frame | None:
         signed = False

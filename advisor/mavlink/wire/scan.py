@@ -121,7 +121,7 @@ def scan(
     senders: Ints,
     packets: Ints,
     newest: Ints,
-    found: Ints,
+    frames: Ints,
 ) -> tuple[int, int]:
     """Find the good frames in a part of the stream.
 
@@ -138,13 +138,13 @@ def scan(
     senders, packets, newest
         State that is kept from call to call, see `advisor.mavlink.wire.arrivals`. The first is indexed by
         ``system << 8 | component``.
-    found : shape (at least n // 8 + 1, FOUND_COLUMNS)
+    frames : shape (at least n // 8 + 1, FOUND_COLUMNS)
         Table that receives one row for each wanted frame.
 
     Returns
     -------
     rows : int
-        Number of rows of ``found`` in use.
+        Number of rows of ``frames`` in use.
     keep : int
         Index of the first byte that the next call needs again.
     """
@@ -186,11 +186,11 @@ def scan(
         if message < len(kinds) and seeds[message] >= 0:
             state[KNOWN] += 1
             if kept and kinds[message] >= 0:
-                found[rows, KIND] = kinds[message]
-                found[rows, SOURCE] = source
-                found[rows, START] = at
-                found[rows, LENGTH] = length
-                found[rows, STAMP] = state[LAST_STAMP]
+                frames[rows, KIND] = kinds[message]
+                frames[rows, SOURCE] = source
+                frames[rows, START] = at
+                frames[rows, LENGTH] = length
+                frames[rows, STAMP] = state[LAST_STAMP]
                 rows += 1
         end = at + length
         at = end + STAMP_BYTES

@@ -54,9 +54,9 @@ def _found() -> Iterator[LogFormat]:
         yield import_module(module.name).FORMAT
 
 
-FORMATS: tuple[LogFormat, ...] = tuple(sorted(_found(), key=lambda one: (one.has_magic, one.ending)))
+FORMATS: tuple[LogFormat, ...] = tuple(sorted(_found(), key=lambda kind: (kind.has_magic, kind.ending)))
 """All formats, telemetry first, in the order of the user's sentence."""
-ENDINGS: tuple[str, ...] = tuple(one.ending for one in FORMATS if one.read_columns is None)
+ENDINGS: tuple[str, ...] = tuple(kind.ending for kind in FORMATS if kind.read_columns is None)
 """Usual file endings of the logs for which a folder is searched. Most tables in a folder are no flights."""
-GIVE = f"Give {', '.join(one.given for one in FORMATS[:-1])} or {FORMATS[-1].given}."
+GIVE = f"Give {', '.join(kind.given for kind in FORMATS[:-1])} or {FORMATS[-1].given}."
 """Sentence that lists the readable logs."""

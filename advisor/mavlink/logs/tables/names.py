@@ -105,5 +105,5 @@ def _without_unit(quantity: str, name: str) -> str:
 
 def is_flight(columns: Iterable[str]) -> bool:
     """Return whether the names of columns include a time, an angular rate and a control surface."""
-    found = recognised_columns(columns).keys()
-    return "time" in found and bool(found & RATES) and bool(found & {"elevator", "aileron", "rudder"})
+    keys = recognised_columns(columns).keys()
+    return "time" in keys and bool(keys & RATES) and bool(keys & {"elevator", "aileron", "rudder"})

@@ -40,16 +40,16 @@ def quantities_of(
         key, column = lost[0]
         raise ConfigurationError(f"columns.{key}: {file} has no column {column!r}; it has {_listed(table)}.")
     others = [column for column in table if column not in named.values()]
-    usual = {key: one.column for key, one in recognised_columns(others).items()}
+    usual = {key: recognised.column for key, recognised in recognised_columns(others).items()}
     chosen = {key: named.get(key) or usual.get(key) for key in {**named, **usual}}
-    found = {
+    quantities = {
         key: _factor(key, column, columns) * table[column]
         for key, column in chosen.items()
         if column is not None and len(table[column]) == len(table[chosen["time"] or column])
     }
-    _refuse_missing(found, table, file)
-    _refuse_degrees(found, chosen, file)
-    return found
+    _refuse_missing(quantities, table, file)
+    _refuse_degrees(quantities, chosen, file)
+    return quantities
 
 
 def _one_group(table: Mapping[str, FloatArray]) -> Mapping[str, FloatArray]:
@@ -74,27 +74,27 @@ def _factor(key: str, column: str, columns: TableColumns) -> float:
     return stated if by_name is None else by_name
 
 
-def _refuse_missing(found: Mapping[str, FloatArray], table: Mapping[str, FloatArray], file: str) -> None:
-    missing = [key for key in ("time",) if key not in found]
-    missing += [] if found.keys() & RATES else ["q (or p, r)"]
-    missing += [] if found.keys() & {"elevator", "aileron", "rudder"} else ["elevator (or aileron, rudder)"]
+def _refuse_missing(values: Mapping[str, FloatArray], table: Mapping[str, FloatArray], file: str) -> None:
+    missing = [key for key in ("time",) if key not in values]
+    missing += [] if values.keys() & RATES else ["q (or p, r)"]
+    missing += [] if values.keys() & {"elevator", "aileron", "rudder"} else ["elevator (or aileron, rudder)"]
     if missing:
         raise UnusableInputError(
             "table_columns",
             f"{file} has no column that is {' and '.join(missing)}; it has {_listed(table)}.",
             "Name its columns in the aircraft file: columns: {time: …, elevator: …, q: …}.",
         )
-    t = found["time"]
+    t = values["time"]
     if len(t) < 2 or not np.all(np.diff(t) > 0.0):
         raise UnusableInputError(
             "table_time", f"The time of {file} does not rise from row to row.", "Correct columns.time."
         )
 
 
-def _refuse_degrees(found: Mapping[str, FloatArray], chosen: Mapping[str, str | None], file: str) -> None:
+def _refuse_degrees(values: Mapping[str, FloatArray], chosen: Mapping[str, str | None], file: str) -> None:
     """Refuse angles whose values are not in rad."""
-    for name in (n for n in _HALF_TURN if n in found):
-        largest = float(np.nanmax(np.abs(found[name]), initial=0.0))
+    for name in (n for n in _HALF_TURN if n in values):
+        largest = float(np.nanmax(np.abs(values[name]), initial=0.0))
         if largest > np.pi / 2.0:
             raise UnusableInputError(
                 "table_units",
