@@ -8,6 +8,7 @@ share of the squared motion. Only that share is evidence for a missing law.
 from collections.abc import Sequence
 
 import numpy as np
+from scipy.optimize import nnls
 
 from advisor.process.arrays import FloatArray
 
@@ -21,29 +22,32 @@ WITNESSES = 3
 def moving_power(residuals: Sequence[FloatArray], motions: Sequence[FloatArray]) -> tuple[float, float, int]:
     """Return the mean square of the residual that grows with the motion, its error, and the freedom of that.
 
-    The share of the squared motion is estimated with a level of each manoeuvre. A share that does not repeat
-    has a large error.
+    Each output's squared motion has a share of at least 0, and each manoeuvre a level. A share that does not
+    repeat has a large error, by the jackknife over the manoeuvres.
 
     Parameters
     ----------
-    residuals, motions
-        Per manoeuvre, shape (bins,): mean square of the residual and of the motion in bins of equal length.
+    residuals
+        Per manoeuvre, shape (bins,): mean square of the residual in bins of equal length.
+    motions
+        Per manoeuvre, shape (outputs, bins): mean square of each output's motion in these bins.
 
     Returns
     -------
     power, error, freedom
-        Mean square, below 0 where the residual falls while the motion grows; its standard error, from the
-        scatter between manoeuvres; and manoeuvres less one. All are 0 with fewer than three manoeuvres.
+        Mean square; its standard error, from the scatter between manoeuvres; and manoeuvres less one. All are
+        0 with fewer than three manoeuvres.
     """
-    about = [motion - np.mean(motion) for motion in motions]
-    power = np.array([float(x @ x) for x in about])
-    pull = np.array([float(x @ residual) for x, residual in zip(about, residuals, strict=True)])
-    if len(residuals) < WITNESSES or np.sum(power) <= 0.0:
+    about = [motion - np.mean(motion, axis=1, keepdims=True) for motion in motions]
+    left = [residual - np.mean(residual) for residual in residuals]
+    n, moved = len(residuals), np.mean(np.hstack(motions), axis=1)
+    if n < WITNESSES or not np.any(moved > 0.0):
         return 0.0, 0.0, 0
-    share = float(np.sum(pull) / np.sum(power))
-    # Leave-one-out (jackknife) error of a ratio of sums.
-    without = (np.sum(pull) - pull) / np.maximum(np.sum(power) - power, 1e-300)
-    n = len(without)
+
+    def power(kept: Sequence[int]) -> float:
+        shares, _ = nnls(np.hstack([about[m] for m in kept]).T, np.concatenate([left[m] for m in kept]))
+        return float(shares @ moved)
+
+    without = np.array([power([k for k in range(n) if k != m]) for m in range(n)])
     error = float(np.sqrt((n - 1) / n * np.sum((without - np.mean(without)) ** 2)))
-    moved = float(np.mean(np.concatenate(motions)))
-    return share * moved, error * moved, n - 1
+    return power(range(n)), error, n - 1

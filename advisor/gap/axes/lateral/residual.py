@@ -33,20 +33,22 @@ def residual_of(fit: Fit, flown: Flown, share: float) -> Residual:
     (power, error, freedom), unit = max(powers, key=lambda it: it[0][0] / it[1])
     by_air = next(probe.explained for probe in probes if probe.block == AIR)
     most = probes[0].explained
-    left = max(power, 0.0) / unit
-    size, beside = (float(np.sqrt(part * left)) for part in (most, max(most - by_air, 0.0)))
+    size, beside = (float(np.sqrt(part * power / unit)) for part in (most, max(most - by_air, 0.0)))
     named = [probe for probe in probes if probe.block != AIR]
     blocks = shares_of([probe.block for probe in named], [share**2 * probe.gain for probe in named])
     return Residual(size, blocks, beside, most * error / unit, freedom)
 
 
 def _motion(fit: Fit, m: int, peaks: Mapping[int, float]) -> FloatArray:
-    """Return the mean square of a manoeuvre's motion in each bin, relative to the peaks, shape (bins,)."""
-    moved = []
+    """Return the mean squares of a manoeuvre's motion, relative to the peaks, shape (channels, bins).
+
+    A channel that the manoeuvre lacks has no motion.
+    """
+    moved = {}
     for rows in fit.assembly.rows[m].values():
-        y = fit.fitted[rows] - np.median(fit.fitted[rows])
-        moved.append(_binned(fit, m, rows, (y / peaks[int(fit.assembly.channel[rows][0])]) ** 2))
-    return np.asarray(np.mean(moved, axis=0))
+        k, y = int(fit.assembly.channel[rows][0]), fit.fitted[rows] - np.median(fit.fitted[rows])
+        moved[k] = _binned(fit, m, rows, (y / peaks[k]) ** 2)
+    return np.array([moved.get(int(k), 0.0 * next(iter(moved.values()))) for k in peaks])
 
 
 def _binned(fit: Fit, m: int, rows: slice, values: FloatArray) -> FloatArray:

@@ -118,15 +118,32 @@ def test_a_disturbance_is_found_in_its_block(case, flight, block):
     largest = np.max(np.abs(seen) / NOISE[fit.assembly.channel])
     found = residual_of(with_residual(fit, 20.0 / largest * seen), case.flown, 1.0)
     if block == "air":
-        assert found.size == 0.0, "air that moves at rest as in motion repeats with no motion"
+        right, lacking = found.nats(in_moving_air=False)
+        assert lacking < right, "air that moves at rest as in motion repeats with no motion"
     else:
         assert max(found.blocks, key=lambda one: found.blocks[one]) == block
+
+
+@pytest.mark.parametrize(("everywhere", "repeats"), [(True, True), (False, False)])
+def test_a_residual_with_the_yaw_rate_scatters_less_where_every_manoeuvre_has_it(
+    case, flight, everywhere, repeats
+):
+    """The second manoeuvre is a rudder input."""
+    fit, _, _ = flight
+    left = np.zeros(len(fit.fitted))
+    for named in fit.assembly.rows if everywhere else fit.assembly.rows[1:2]:
+        left[named["r"]] = 0.05 * fit.fitted[named["r"]]
+    found = residual_of(with_residual(fit, left), case.flown, 1.0)
+    assert found.freedom == len(fit.assembly.rows) - 1
+    assert found.size > 1.0
+    assert (found.error < 0.6 * found.size**2) is repeats
 
 
 def test_white_noise_leaves_no_residual(case, flight):
     fit, _, _ = flight
     still = with_residual(fit, np.zeros(len(fit.fitted)))
-    assert residual_of(still, case.flown, 1.0).size < 0.05
+    right, lacking = residual_of(still, case.flown, 1.0).nats(in_moving_air=False)
+    assert lacking < right - 1.0
 
 
 def test_the_derivatives_are_estimated_anew_in_gusts(case, flight):
