@@ -52,7 +52,7 @@ def commanded(
     t
         Shape (n,), vehicle time of the messages, s since boot.
     """
-    found = []
+    pieces = []
     for channel, surface in surfaces.items():
         pwm = pulses.of(surface.outputs)
         alive = driven(pwm, autopilot)
@@ -66,8 +66,8 @@ def commanded(
                 continue
             angles, order = heard.angles(pwm[rows][:, carry]), pulses.columns.order[rows]
             source = pulses.source(heard.outputs)
-            found.append(Commanded(channel, pulses.columns.name, source, heard, t[rows], angles, order))
-    return found
+            pieces.append(Commanded(channel, pulses.columns.name, source, heard, t[rows], angles, order))
+    return pieces
 
 
 def _alike(alive: NDArray[np.bool_], rows: IntArray) -> list[IntArray]:

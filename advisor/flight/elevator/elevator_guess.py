@@ -158,8 +158,8 @@ class ElevatorGuesses:
     def _guess_sides(self, cut: Callable[[str, float, float], Channel | None], at_s: float) -> None:
         for name, (channel, rate) in _SIDE_RATES.items():
             guess = self._outputs.made(cut(channel, at_s - KEEP_S, at_s - LATE_S), rate)
-            known = self.sides.get(name)
-            if guess is not None and (known is None or guess.share > known.share):
+            earlier = self.sides.get(name)
+            if guess is not None and (earlier is None or guess.share > earlier.share):
                 self.sides[name] = guess
 
 

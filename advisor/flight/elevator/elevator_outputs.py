@@ -81,12 +81,12 @@ def _as_found(calibration: Pairs | None, wiring: Wiring) -> Surface | Problem:
     parts = parts_of("elevator", wiring)
     if not parts:
         return _nothing_found(wiring)
-    found = list(dict.fromkeys(wiring.roles[n].surface for n in _numbers(parts) if _is_half(n, wiring)))
+    kinds = list(dict.fromkeys(wiring.roles[n].surface for n in _numbers(parts) if _is_half(n, wiring)))
     if calibration is not None:
-        return _carried_over(calibration, parts, found, wiring)
+        return _carried_over(calibration, parts, kinds, wiring)
     if len(parts) == 1:
-        return _uncalibrated(parts[0], _why(found, wiring), wiring)
-    return _scaled(parts, _formed(parts, _why(found, wiring), found), wiring)
+        return _uncalibrated(parts[0], _why(kinds, wiring), wiring)
+    return _scaled(parts, _formed(parts, _why(kinds, wiring), kinds), wiring)
 
 
 def _carried_over(
@@ -105,7 +105,7 @@ def _carried_over(
             "Replace elevator.output by elevator.outputs, with a calibration for each output.",
         )
     measured = wiring.scale(first)
-    found = tuple(
+    carried = tuple(
         Part(
             part.output,
             Calibration(calibration).carried_over(measured, wiring.scale(part.output)),
@@ -124,7 +124,7 @@ def _carried_over(
         f"elevator.calibration is taken for output {first} and carried over to {joined_numbers(others)}, "
         f"counted from {wiring.words.trim}{way}; elevator.outputs can hold one for each."
     )
-    return Surface(found, True, f"{_formed(found, _why(kinds, wiring), kinds)} {said}")
+    return Surface(carried, True, f"{_formed(carried, _why(kinds, wiring), kinds)} {said}")
 
 
 def _uncalibrated(part: Part, why: str, wiring: Wiring) -> Surface:

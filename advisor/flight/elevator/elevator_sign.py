@@ -36,15 +36,15 @@ class ElevatorSign:
 
     def right(self, maneuver: Maneuver) -> tuple[Maneuver, list[Notice]]:
         """Return the manoeuvre with the right elevator sign, and a notice about a reversed sign."""
-        found = []
+        notices = []
         stated = maneuver.scale is not None and maneuver.scale.reversed
         if self._direction is not None:
             # A parameter that is heard after the answer may state another direction. The answer stays.
             self.backwards = stated != self._direction
         elif (backwards := answers_backwards(maneuver)) is not None:
             self._direction, self.backwards = stated != backwards, backwards
-            found = [Notice("elevator_backwards", SAID)] if backwards else []
-        return (turned(maneuver) if self.backwards else maneuver), found
+            notices = [Notice("elevator_backwards", SAID)] if backwards else []
+        return (turned(maneuver) if self.backwards else maneuver), notices
 
 
 def turned(maneuver: Maneuver) -> Maneuver:
@@ -73,9 +73,9 @@ def answers_backwards(maneuver: Maneuver) -> bool | None:
     motion = [np.interp(t, channels[n].t, channels[n].y) for n in ("elevator", "q", "alpha") if n in channels]
     X = np.column_stack([*(integrated(t, x - x[0]) for x in motion), t - t[0], np.ones(len(t))])
     scale = np.maximum(np.max(np.abs(X), axis=0), 1e-12)
-    found, *_ = np.linalg.lstsq(X / scale, q, rcond=None)
-    left: FloatArray = q - (X / scale) @ found
-    variance = float(left @ left) / (len(q) - len(found))
+    factors, *_ = np.linalg.lstsq(X / scale, q, rcond=None)
+    left: FloatArray = q - (X / scale) @ factors
+    variance = float(left @ left) / (len(q) - len(factors))
     std = np.sqrt(variance * np.linalg.pinv((X / scale).T @ (X / scale))[0, 0])
-    sure = abs(found[0]) > _SURELY * std and np.var(left) < (1.0 - _EXPLAINED) * np.var(q)
-    return bool(found[0] > 0.0) if sure else None
+    sure = abs(factors[0]) > _SURELY * std and np.var(left) < (1.0 - _EXPLAINED) * np.var(q)
+    return bool(factors[0] > 0.0) if sure else None

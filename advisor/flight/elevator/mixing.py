@@ -126,8 +126,8 @@ class Mixing:
         q, alpha = (self._tracks.cut(name, t[0], t[-1], int(window.order[-1])) for name in ("q", "alpha"))
         if q is not None:
             shares = [part.share for part in surface.parts]
-            told = pitch_signs(t, window.angles[first], shares, q, alpha, singly=bool(surface.unsure))
-            for n, lifts in zip(surface.outputs, told, strict=True):
+            signs = pitch_signs(t, window.angles[first], shares, q, alpha, singly=bool(surface.unsure))
+            for n, lifts in zip(surface.outputs, signs, strict=True):
                 if lifts is not None:
                     self._lifts.setdefault(n, lifts)
         return self._tell(surface) if self._is_settled(surface) else []

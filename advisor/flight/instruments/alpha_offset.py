@@ -47,18 +47,18 @@ def offset_of(maneuver: Maneuver, airspeed_m_s: float | None) -> AlphaOffset:
     airspeed_m_s
         Air speed of a log without an air speed, m/s.
     """
-    found = maneuver.channels
-    if "climb_rate" not in found or len(found["climb_rate"]) < 4:
+    channels = maneuver.channels
+    if "climb_rate" not in channels or len(channels["climb_rate"]) < 4:
         return UNKNOWN
-    climb = found["climb_rate"]
+    climb = channels["climb_rate"]
 
     def at(name: str) -> FloatArray:
-        return np.interp(climb.t, found[name].t, found[name].y)
+        return np.interp(climb.t, channels[name].t, channels[name].y)
 
     speed = speed_at(climb.t, maneuver, airspeed_m_s)
     assert speed is not None
     speed = np.maximum(speed, 1.0)
-    up, size = gravity_in_plane(at("theta"), channel_at("bank", climb.t, found))
+    up, size = gravity_in_plane(at("theta"), channel_at("bank", climb.t, channels))
     apart = at("alpha") - (up - np.arcsin(np.clip(climb.y / speed * GRAVITY_M_S2 / size, -0.9, 0.9)))
     # The climb rate is slow and smoothed, so that one reading a second counts as independent.
     independent = max(2.0, climb.t[-1] - climb.t[0])
@@ -69,14 +69,14 @@ def offset_of(maneuver: Maneuver, airspeed_m_s: float | None) -> AlphaOffset:
 def mean_offset(offsets: Sequence[AlphaOffset]) -> AlphaOffset:
     """Return the mean offset for the aircraft from the offsets of its manoeuvres. Unknown offsets are
     ignored."""
-    told = [o for o in offsets if np.isfinite(o.rad)]
-    if not told:
+    seen = [o for o in offsets if np.isfinite(o.rad)]
+    if not seen:
         return UNKNOWN
-    changes = np.array([o.change_rad for o in told])
+    changes = np.array([o.change_rad for o in seen])
     scatter = np.std(changes) / np.sqrt(max(len(changes) - 1, 1))
     change = float(np.mean(changes))
     plain = len(changes) > 1 and abs(change) > _SCATTERS * scatter
-    return AlphaOffset(*weighted([o.rad for o in told], [o.std_rad for o in told]), change if plain else 0.0)
+    return AlphaOffset(*weighted([o.rad for o in seen], [o.std_rad for o in seen]), change if plain else 0.0)
 
 
 def speed_at(t: FloatArray, maneuver: Maneuver, otherwise: float | None) -> FloatArray | None:

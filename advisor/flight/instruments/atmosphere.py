@@ -53,10 +53,10 @@ class AirData:
 
     def true_speed(self, airspeed_m_s: float) -> float:
         """Return the true air speed in m/s for an air speed of the manoeuvres."""
-        found = airspeed_m_s * (1.0 + self.excess)
+        speed = airspeed_m_s * (1.0 + self.excess)
         if self.speed_kind == "true":
-            return found
-        return found * sqrt(SEA_LEVEL_DENSITY_KG_M3 / self.density_kg_m3)
+            return speed
+        return speed * sqrt(SEA_LEVEL_DENSITY_KG_M3 / self.density_kg_m3)
 
     def dynamic_pressure(self, airspeed_m_s: float) -> float:
         """Return the dynamic pressure in Pa for an air speed of the manoeuvres."""
@@ -81,14 +81,14 @@ class AirData:
     @property
     def sentence(self) -> str:
         """Sentence about the sources of density and air speed."""
-        told = {
+        origin = {
             "pressure and temperature": "from static pressure and the aircraft file's temperature",
             "height and temperature": "from the height flown and the aircraft file's temperature",
             "pressure": "of the standard atmosphere at the measured static pressure",
             "height": "of the standard atmosphere at the height flown",
             "sea level": "of the standard atmosphere at sea level, because no pressure or height is logged",
         }[self.source]
-        return f"air density {self.density_kg_m3:.3f} kg/m³ {told}; {self.speed_said}"
+        return f"air density {self.density_kg_m3:.3f} kg/m³ {origin}; {self.speed_said}"
 
 
 def air_flown(maneuvers: Sequence[Maneuver], temperature_c: float | None = None) -> AirData:
@@ -115,8 +115,7 @@ def air_flown(maneuvers: Sequence[Maneuver], temperature_c: float | None = None)
         return AirData(SEA_LEVEL_DENSITY_KG_M3, "sea level", kind, said, gain)
     if temperature_c is not None:
         source = f"{source} and temperature"
-    found = float(density(pressure, temperature_c))
-    return AirData(found, source, kind, said, gain)  # type: ignore[arg-type]
+    return AirData(float(density(pressure, temperature_c)), source, kind, said, gain)  # type: ignore[arg-type]
 
 
 def _speed_said(speeds: Sequence[Channel]) -> str:

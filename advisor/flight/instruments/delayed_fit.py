@@ -130,7 +130,7 @@ def _descended(
     """Return the point that Gauss-Newton reaches from a start within some rounds."""
     grid, delays = summands[0].t, start.copy()
     free = [i for i, s in enumerate(summands) if s.factor is None]
-    known = np.array([0.0 if s.factor is None else s.factor for s in summands])
+    given = np.array([0.0 if s.factor is None else s.factor for s in summands])
     while True:
         shifted = [t - delay for delay in delays]
         columns = np.column_stack([np.interp(at, grid, s) for at, s in zip(shifted, shapes, strict=True)])
@@ -138,10 +138,10 @@ def _descended(
             [np.interp(at, grid, s.rate) for at, s in zip(shifted, summands, strict=True)]
         )
         linear = np.column_stack([columns[:, free], slow])
-        fitted = np.linalg.lstsq(linear, y - columns @ known, rcond=None)[0]
-        factors = known.copy()
+        fitted = np.linalg.lstsq(linear, y - columns @ given, rcond=None)[0]
+        factors = given.copy()
         factors[free] = fitted[: len(free)]
-        residual = y - columns @ known - linear @ fitted
+        residual = y - columns @ given - linear @ fitted
         here = _Point(delays, factors, np.column_stack([-factors * rates, linear]), residual)
         if rounds == 0:
             return here

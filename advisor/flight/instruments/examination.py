@@ -66,16 +66,16 @@ def _alpha_and_force(work: Work) -> None:
     if not work.has("alpha"):
         return
     _unwrap_alpha(work)
-    known = work.learn(alpha_against_motion(work.channels)).get("alpha_scale")
-    weighed = _weighed_alpha(known) if known is not None else None
-    if known is not None and weighed is not None and weighed.contradicts and weighed.best != ANY:
-        _name_alpha(work, weighed, known)
+    scale = work.learn(alpha_against_motion(work.channels)).get("alpha_scale")
+    weighed = _weighed_alpha(scale) if scale is not None else None
+    if scale is not None and weighed is not None and weighed.contradicts and weighed.best != ANY:
+        _name_alpha(work, weighed, scale)
         return
-    told = work.learn(force_against_alpha(work.channels)) if work.has("q", "a_z", "airspeed") else {}
-    if told and (_clock_of_force(work, told) or _airspeed(work, told)):
+    evidence = work.learn(force_against_alpha(work.channels)) if work.has("q", "a_z", "airspeed") else {}
+    if evidence and (_clock_of_force(work, evidence) or _airspeed(work, evidence)):
         return
-    if known is not None and weighed is not None and weighed.contradicts:
-        _name_alpha(work, weighed, known)
+    if scale is not None and weighed is not None and weighed.contradicts:
+        _name_alpha(work, weighed, scale)
 
 
 def _unwrap_alpha(work: Work) -> None:
@@ -92,7 +92,7 @@ def _unwrap_alpha(work: Work) -> None:
     work.correct("alpha", lambda channel: replace(channel, y=(channel.y + pi) % (2.0 * pi) - pi))
 
 
-def _weighed_alpha(known: Measured) -> Weighed:
+def _weighed_alpha(scale: Measured) -> Weighed:
     factors = {
         REVERSED: -1.0,
         "in rad": pi / 180.0,
@@ -100,34 +100,34 @@ def _weighed_alpha(known: Measured) -> Weighed:
         "reversed and in rad": -pi / 180.0,
         "reversed and in deg": -180.0 / pi,
     }
-    return weigh(known, factors, VANE_WIDTH)
+    return weigh(scale, factors, VANE_WIDTH)
 
 
-def _name_alpha(work: Work, weighed: Weighed, known: Measured) -> None:
+def _name_alpha(work: Work, weighed: Weighed, scale: Measured) -> None:
     source = work.channels["alpha"].source
-    told = f"it moves {with_error(known)} times as far as pitch rate and specific force say"
+    said = f"it moves {with_error(scale)} times as far as pitch rate and specific force say"
     if weighed.best == ANY:
         work.contradict(
-            "alpha", "scale", 1.0, known.value, known, f"alpha is no angle of attack: {told}",
+            "alpha", "scale", 1.0, scale.value, scale, f"alpha is no angle of attack: {said}",
             f"check the vane and its calibration ({source})",
         )  # fmt: skip
     elif weighed.best == REVERSED:
         work.contradict(
-            "alpha", "sign", "nose up", "nose down", known, f"alpha has the wrong sign: {told}",
+            "alpha", "sign", "nose up", "nose down", scale, f"alpha has the wrong sign: {said}",
             f"reverse the sign of {source}: an angle of attack is positive nose up",
         )  # fmt: skip
     else:
         unit = weighed.best[-3:]
         stated = "deg" if unit == "rad" else "rad"
         work.contradict(
-            "alpha", "unit", stated, unit, known, f"alpha is {weighed.best} where {stated} is stated: {told}",
+            "alpha", "unit", stated, unit, scale, f"alpha is {weighed.best} where {stated} is stated: {said}",
             f"send {source} in {stated}, positive nose up",
         )  # fmt: skip
 
 
-def _clock_of_force(work: Work, told: Mapping[str, Measured]) -> bool:
+def _clock_of_force(work: Work, evidence: Mapping[str, Measured]) -> bool:
     """Compare the clock of the specific force with that of the pitch rate; return whether they differ."""
-    least, most = told.get("a_z_least"), told.get("a_z_most")
+    least, most = evidence.get("a_z_least"), evidence.get("a_z_most")
     range_s = FILTER_S + half_intervals(work, "q", "a_z")
     exact = least is not None and most is not None and most.value - least.value < range_s
     late_rate = next((f for f in work.findings if f.code == "q_delay_s"), None)
@@ -164,43 +164,43 @@ def _speed_unit(work: Work) -> bool:
     """Compare the change of the air speed with the accelerometers; return whether the air speed has the
     stated unit.
     """
-    known = work.learn(speed_against_force(work.channels)).get("speed_scale")
-    if known is None or not work.has("airspeed"):
+    scale = work.learn(speed_against_force(work.channels)).get("speed_scale")
+    if scale is None or not work.has("airspeed"):
         return True
-    weighed = _weighed_speed(known)
+    weighed = _weighed_speed(scale)
     # A gust changes the air speed by any amount, which is no unit.
     if weighed.contradicts and weighed.best != ANY:
-        _name_speed(work, weighed, known, "its change is {} times the change that the accelerometers give")
+        _name_speed(work, weighed, scale, "its change is {} times the change that the accelerometers give")
         return False
     return True
 
 
-def _weighed_speed(known: Measured) -> Weighed:
+def _weighed_speed(scale: Measured) -> Weighed:
     factors = {unit: 1.0 / size for unit, size in _SPEED_UNITS_M_S.items()}
-    return weigh(known, factors, _AIRSPEED_WIDTH, _AIRSPEED_MEAN)
+    return weigh(scale, factors, _AIRSPEED_WIDTH, _AIRSPEED_MEAN)
 
 
-def _airspeed(work: Work, told: Mapping[str, Measured]) -> bool:
+def _airspeed(work: Work, evidence: Mapping[str, Measured]) -> bool:
     """Compare the air speed with the motion; return whether both contradict each other."""
-    known = told.get("airspeed_scale")
-    if known is None:
+    scale = evidence.get("airspeed_scale")
+    if scale is None:
         return False
-    weighed = _weighed_speed(known)
+    weighed = _weighed_speed(scale)
     if weighed.contradicts:
         by = "it reads {} times the speed that pitch rate, specific force and alpha give"
-        _name_speed(work, weighed, known, by)
+        _name_speed(work, weighed, scale, by)
     return weighed.contradicts
 
 
-def _name_speed(work: Work, weighed: Weighed, known: Measured, by: str) -> None:
-    told_so = by.format(with_error(known))
+def _name_speed(work: Work, weighed: Weighed, scale: Measured, by: str) -> None:
+    said = by.format(with_error(scale))
     if weighed.best == ANY:
         work.contradict(
-            "airspeed", "scale", 1.0, known.value, known, f"the air speed is wrong: {told_so}",
+            "airspeed", "scale", 1.0, scale.value, scale, f"the air speed is wrong: {said}",
             "check the air speed sensor and its calibration",
         )  # fmt: skip
     else:
         work.contradict(
-            "airspeed", "unit", "m/s", weighed.best, known, f"the air speed is in {weighed.best}: {told_so}",
+            "airspeed", "unit", "m/s", weighed.best, scale, f"the air speed is in {weighed.best}: {said}",
             "send the air speed in m/s",
         )  # fmt: skip

@@ -138,7 +138,7 @@ class Work:
         channel: str,
         quantity: Quantity,
         stated: float | str | None,
-        found: float | str,
+        value: float | str,
         measured: Measured,
         text: str,
         fix: str,
@@ -148,7 +148,7 @@ class Work:
         """Add a contradiction to the findings."""
         self.findings.append(
             InstrumentFinding(
-                channel, quantity, stated, found, measured.std, True, text, fix, used, removed_s
+                channel, quantity, stated, value, measured.std, True, text, fix, used, removed_s
             )
         )
 
@@ -189,8 +189,8 @@ def be_late(
         f"check the stamps of {name} ({work.channels[channel].source})", used,
         late.value if shifted else 0.0,
     )  # fmt: skip
-    for one in shifted:
-        work.shift(one, late.value)
+    for moved in shifted:
+        work.shift(moved, late.value)
 
 
 def half_intervals(work: Work, *names: str) -> float:

@@ -63,8 +63,8 @@ def sign_or_clock(
     """
     delays = np.arange(-FARTHEST_S, FARTHEST_S + _STEP_S / 2.0, _STEP_S)
     tries = [fit for delay in delays.tolist() if (fit := _tried(t, y, grid, shape, delay, drift)) is not None]
-    right = [one for one in tries if one.factor * sense > 0.0]
-    wrong = [one for one in tries if one.factor * sense < 0.0 and abs(one.delay_s) <= LONGEST_DELAY_S]
+    right = [fit for fit in tries if fit.factor * sense > 0.0]
+    wrong = [fit for fit in tries if fit.factor * sense < 0.0 and abs(fit.delay_s) <= LONGEST_DELAY_S]
     if not wrong or not right:
         return SignOrClock(bool(wrong), 0.0, bool(right))
     clock, sign = _best(right), _best(wrong)
@@ -73,7 +73,7 @@ def sign_or_clock(
 
 
 def _best(tries: Sequence[_Try]) -> _Try:
-    return min(tries, key=lambda one: one.unexplained)
+    return min(tries, key=lambda fit: fit.unexplained)
 
 
 def _tried(

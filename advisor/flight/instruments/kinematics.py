@@ -87,8 +87,8 @@ def check_alpha(
         Distances of accelerometer and vane ahead of the centre of gravity, which are corrected if known. An
         unknown accelerometer arm appears as a small negative lag, and a vane arm as a lag.
     """
-    found = maneuver.channels
-    missing = [name for name in NEEDED if name not in found or len(found[name]) < 20]
+    channels = maneuver.channels
+    missing = [name for name in NEEDED if name not in channels or len(channels[name]) < 20]
     if speed_at(np.zeros(1), maneuver, airspeed_m_s) is None:
         missing.append("airspeed")
     if missing:
@@ -97,17 +97,17 @@ def check_alpha(
         # The mean offset of alpha needs the attitude and the climb rate only.
         offset = offset_of(maneuver, airspeed_m_s) if missing == ["a_z"] else UNKNOWN
         return KinematicCheck("not possible", said, offset=offset)
-    t_alpha, alpha = renewed(found["alpha"].t, found["alpha"].y)
-    t = found["q"].t
+    t_alpha, alpha = renewed(channels["alpha"].t, channels["alpha"].y)
+    t = channels["q"].t
     speed = speed_at(t, maneuver, airspeed_m_s)
     assert speed is not None
     if np.min(speed) < 1.0 or len(t_alpha) < 12:
         return KinematicCheck("not possible", "alpha cannot be checked against the motion: no usable speed.")
     if vane_arm_m:
-        alpha = alpha + vane_arm_m * np.interp(t_alpha, t, found["q"].y / speed)
-    rate = alpha_rate(t, np.interp(t, t_alpha, alpha), speed, found, accelerometer_arm_m or 0.0)
+        alpha = alpha + vane_arm_m * np.interp(t_alpha, t, channels["q"].y / speed)
+    rate = alpha_rate(t, np.interp(t, t_alpha, alpha), speed, channels, accelerometer_arm_m or 0.0)
     rebuilt = integrated(t, rate)
-    elevator = found.get("elevator")
+    elevator = channels.get("elevator")
     commanded = None if elevator is None else _followers(t, np.interp(t, elevator.t, elevator.y))
     return _compare(t, rebuilt, rate, commanded, t_alpha, alpha, offset_of(maneuver, airspeed_m_s))
 
@@ -118,12 +118,12 @@ def _followers(t: FloatArray, command: FloatArray) -> FloatArray:
     """
     moved = command - command[0]
     first = np.zeros(len(_FOLLOW_S))
-    found = np.zeros((len(t), len(_FOLLOW_S)))
+    followed = np.zeros((len(t), len(_FOLLOW_S)))
     for i, dt in enumerate(np.diff(t), start=1):
         share = -np.expm1(-dt / _FOLLOW_S)
         first = first + share * (moved[i - 1] - first)
-        found[i] = found[i - 1] + share * (first - found[i - 1])
-    return found
+        followed[i] = followed[i - 1] + share * (first - followed[i - 1])
+    return followed
 
 
 def _compare(
@@ -154,9 +154,9 @@ def _compare(
         tau = start
         for _ in range(12):
             shape, slope = np.interp(tm - tau, t, rebuilt), np.interp(tm - tau, t, rate)
-            told = _told_by(instruments, np.column_stack([shape, slow, slope]))
-            linear = np.linalg.lstsq(told[:, :-1], y, rcond=None)[0]
-            jacobian = np.column_stack([-linear[0] * told[:, -1], told[:, :-1]])
+            projected = _told_by(instruments, np.column_stack([shape, slow, slope]))
+            linear = np.linalg.lstsq(projected[:, :-1], y, rcond=None)[0]
+            jacobian = np.column_stack([-linear[0] * projected[:, -1], projected[:, :-1]])
             left = y - np.column_stack([shape, slow]) @ linear
             step = float(np.linalg.lstsq(jacobian, left, rcond=None)[0][0])
             tau = float(np.clip(tau + np.clip(step, -0.05, 0.05), -0.29, 0.29))

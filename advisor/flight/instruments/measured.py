@@ -39,8 +39,8 @@ def pooled(several: Iterable[Evidence]) -> dict[str, Measured]:
             if np.isfinite(measured.value) and measured.std > 0.0:
                 together.setdefault(name, []).append(measured)
     return {
-        name: Measured(*weighted([m.value for m in found], [m.std for m in found]))
-        for name, found in together.items()
+        name: Measured(*weighted([m.value for m in estimates], [m.std for m in estimates]))
+        for name, estimates in together.items()
     }
 
 

@@ -49,29 +49,29 @@ def hold_rate(
     weighed = weigh(measured, {REVERSED: -1.0, **units}, _GYRO_WIDTH)
     if not weighed.contradicts:
         return True
-    told = f"{PLAIN[angle]} moves {with_error(measured)} times as far as {PLAIN[rate]} says"
+    observation = f"{PLAIN[angle]} moves {with_error(measured)} times as far as {PLAIN[rate]} says"
     if weighed.best == REVERSED:
-        turned(work, reversed_one(), measured, told)
+        turned(work, reversed_one(), measured, observation)
     elif weighed.best == ANY:
         work.contradict(
-            rate, "scale", 1.0, 1.0 / measured.value if measured.value else 0.0, measured, told,
+            rate, "scale", 1.0, 1.0 / measured.value if measured.value else 0.0, measured, observation,
             f"check scale and unit of {PLAIN[rate]}",
         )  # fmt: skip
     else:
         channel, _, unit = weighed.best.partition(" in ")
         stated = "rad/s" if channel == rate else "rad"
         work.contradict(
-            channel, "unit", stated, unit, measured, f"{PLAIN[channel]} is in {unit}: {told}",
+            channel, "unit", stated, unit, measured, f"{PLAIN[channel]} is in {unit}: {observation}",
             f"send {PLAIN[channel]} in {stated}",
         )  # fmt: skip
     return False
 
 
-def turned(work: Work, channel: str, measured: Measured, told: str) -> None:
+def turned(work: Work, channel: str, measured: Measured, observation: str) -> None:
     """Report a channel with the wrong sign."""
     right, wrong, direction = _SENSES[channel]
     work.contradict(
-        channel, "sign", right, wrong, measured, f"{PLAIN[channel]} has the wrong sign: {told}",
+        channel, "sign", right, wrong, measured, f"{PLAIN[channel]} has the wrong sign: {observation}",
         f"check the sign of {PLAIN[channel]} ({work.channels[channel].source}), positive where {direction}",
     )  # fmt: skip
 
@@ -84,21 +84,21 @@ def stated_force_unit(source: str) -> str:
 def hold_force_unit(work: Work) -> bool:
     """Compare the mean vertical force with gravity, correct a known unit or sign, and return whether the unit
     is known."""
-    known = work.learn(force_against_gravity(work.channels)).get("a_z_scale")
-    if known is None or not work.has("a_z"):
+    scale = work.learn(force_against_gravity(work.channels)).get("a_z_scale")
+    if scale is None or not work.has("a_z"):
         return True
     source = work.channels["a_z"].source
     stated = stated_force_unit(source)
     units = {name: FORCE_UNITS_M_S2[stated] / size for name, size in FORCE_UNITS_M_S2.items()}
     factors = {name: factor for name, factor in units.items() if name != stated}
     factors |= {f"{REVERSED}, {name}": -factor for name, factor in units.items()}
-    weighed = weigh(known, factors, _FORCE_WIDTH)
+    weighed = weigh(scale, factors, _FORCE_WIDTH)
     if not weighed.contradicts:
         return True
-    told = f"in the mean it reads {with_error(known)} g where the motion is 1 g"
+    observation = f"in the mean it reads {with_error(scale)} g where the motion is 1 g"
     if weighed.best == ANY:
         work.contradict(
-            "a_z", "scale", 1.0, known.value, known, f"a_z has an unknown unit: {told}",
+            "a_z", "scale", 1.0, scale.value, scale, f"a_z has an unknown unit: {observation}",
             f"check unit and calibration of the accelerometer ({source})",
         )  # fmt: skip
         return False
@@ -106,8 +106,8 @@ def hold_force_unit(work: Work) -> bool:
     other_unit = unit != stated
     said = " and ".join([*([f"in {unit}"] if other_unit else []), *(["z up"] if reverse else [])])
     work.contradict(
-        "a_z", *(("unit", stated, unit) if other_unit else ("sign", "z down", "z up")), known,
-        f"a_z is {said}, not in {stated} with z down: {told}; estimates use the unit and sign found",
+        "a_z", *(("unit", stated, unit) if other_unit else ("sign", "z down", "z up")), scale,
+        f"a_z is {said}, not in {stated} with z down: {observation}; estimates use the unit and sign found",
         f"send {source} in {stated}, z down", used=True,
     )  # fmt: skip
     work.divide("a_z", weighed.factor)

@@ -155,8 +155,8 @@ class Announcements:
         if said.word == "script":
             return self._other_aircraft(said)
         if said.word == "unread":
-            known = "ADVISOR BEGIN number input and ADVISOR END number done"
-            return (Notice(SCRIPT_NOTICE, f"The text ADVISOR {said.said} is no mark; marks are {known}."),)
+            marks = "ADVISOR BEGIN number input and ADVISOR END number done"
+            return (Notice(SCRIPT_NOTICE, f"The text ADVISOR {said.said} is no mark; marks are {marks}."),)
         if said.word == "begin":
             lost = self._dropped(f"before BEGIN {said.number} at {clock(at_s)}")
             self._begun = at_s, said

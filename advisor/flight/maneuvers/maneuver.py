@@ -190,12 +190,12 @@ def are_one(a: Maneuver, b: Maneuver) -> bool:
     name = next((n for n in ("theta", "q") if n in a.channels and n in b.channels), None)
     if name is None or not to_s - from_s > _COMMON * shorter_s:
         return False
-    one, other = a.channels[name], b.channels[name].cut(from_s, to_s)
-    within = (other.t >= one.t[0]) & (other.t <= one.t[-1])
+    reference, other = a.channels[name], b.channels[name].cut(from_s, to_s)
+    within = (other.t >= reference.t[0]) & (other.t <= reference.t[-1])
     t, y = other.t[within], other.y[within]
     if len(t) < _FEWEST:
         return False
-    apart = np.interp(t, one.t, one.y) - y
+    apart = np.interp(t, reference.t, reference.y) - y
     rate = np.gradient(y, t)
     moved = float(rate @ rate)
     skew_s = np.clip(float(rate @ apart) / moved, -_SKEW_S, _SKEW_S) if moved > 0.0 else 0.0

@@ -64,8 +64,8 @@ class MarkerWatch:
 
     def _switch_heard(self, columns: Columns, t: FloatArray, field: str) -> Iterator[Switched]:
         pulses = columns.fields[field]
-        known = np.isfinite(t) & ~np.isin(pulses, _NO_PULSE_US)
-        for i in np.flatnonzero(known):
+        pulsed = np.isfinite(t) & ~np.isin(pulses, _NO_PULSE_US)
+        for i in np.flatnonzero(pulsed):
             on = bool(pulses[i] > self._markers.above_us)
             if on != self._is_on:
                 self._is_on = on
@@ -122,14 +122,14 @@ def marked_span(mark: Mark, elevator: Channel | None) -> Span:
     if elevator is None:
         return Span(mark.start_s, mark.start_s, mark.end_s, end_s, "other", (), by)
     record_from_s = min(max(mark.start_s - LEAD_IN_S, float(elevator.t[0])), mark.start_s)
-    found = _input(mark, elevator)
-    if found is None:
+    movement = _input(mark, elevator)
+    if movement is None:
         return Span(record_from_s, mark.start_s, mark.start_s, end_s, "other", (), by)
-    last_step_s = min(found.last_step_s, mark.end_s)
+    last_step_s = min(movement.last_step_s, mark.end_s)
     if mark.end_s - last_step_s >= mark.free_s:
         # A script that rests before its END gives the control back there: the free response is within.
         end_s = mark.end_s
-    return Span(record_from_s, found.start_s, last_step_s, end_s, found.kind, found.steps, by)
+    return Span(record_from_s, movement.start_s, last_step_s, end_s, movement.kind, movement.steps, by)
 
 
 def _input(mark: Mark, elevator: Channel) -> Movement | None:
@@ -149,8 +149,8 @@ def _input(mark: Mark, elevator: Channel) -> Movement | None:
         # the control was held, an autopilot's loop follows.
         within = elevator.cut(mark.start_s, min(mark.end_s + 2.0 * RESTING_S, mark.reach[1]))
         moved, rest = _moved(within, level), _last(within)
-    found = describe(within.t, within.y, level, rest if is_still(rest, moved) else None)
-    return found if found is not None and found.amplitude >= SMALLEST_RAD else None
+    movement = describe(within.t, within.y, level, rest if is_still(rest, moved) else None)
+    return movement if movement is not None and movement.amplitude >= SMALLEST_RAD else None
 
 
 def _moved(within: Channel, level_rad: float) -> float:

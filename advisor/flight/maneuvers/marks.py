@@ -148,10 +148,10 @@ class Marks:
 
     def hear(self, switched: Iterable[Switched]) -> None:
         """Take switch movements or texts of one message type, in order of arrival."""
-        new = sorted(switched, key=lambda one: one.order)
+        new = sorted(switched, key=lambda switch: switch.order)
         if self._script_order is None:
-            self._script_order = next((one.order for one in new if one.by == "script"), None)
-        self._switched = sorted([*self._switched, *new], key=lambda one: one.order)
+            self._script_order = next((switch.order for switch in new if switch.by == "script"), None)
+        self._switched = sorted([*self._switched, *new], key=lambda switch: switch.order)
 
     def script_passes_over(self, span: Span, up_to_order: int | None) -> bool:
         """Return whether a script in the autopilot announces its inputs, but not this movement.

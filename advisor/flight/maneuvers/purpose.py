@@ -110,8 +110,8 @@ def judged(
         return Because("ground", f"the {control} moved while the aircraft did not fly")
     if hovers(maneuver.mode):
         return Because("hover", f"the {control} moved in {maneuver.mode}, where rotors carry the aircraft")
-    found = _told(maneuver, maneuver.channels if motion is None else motion, loop, tests)
-    because = found if isinstance(found, Because) else None
+    verdict = _told(maneuver, maneuver.channels if motion is None else motion, loop, tests)
+    because = verdict if isinstance(verdict, Because) else None
     lacks = _lacks_in_a_loop(maneuver, because, control, passed_over)
     if closes_pitch_loop(maneuver.mode) and lacks:
         what = "SystemID ran" if _is_swept(maneuver) else f"the {control} moved"
@@ -122,7 +122,7 @@ def judged(
         and (how := flown_elsewhere(maneuver, limits or Limits())) is not None
     ):
         return Because("elsewhere", f"the elevator moved slowly {how}; not a test input")
-    return found
+    return verdict
 
 
 def _lacks_in_a_loop(maneuver: Maneuver, because: Because | None, control: str, passed_over: bool) -> str:
@@ -145,11 +145,11 @@ def _told(
         return Because("unsettled", f"the {control} never came to rest; not a test input")
     if _is_swept(maneuver) and not span.steps:
         return Because("small", f"the {control} stood still; not a test input")
-    found = excitation(maneuver, loop)
-    if found is None:
+    answer = excitation(maneuver, loop)
+    if answer is None:
         return span
-    rate = degrees(found.rate)
-    if found.rate < radians(LEAST_PITCH_RATE_DEG_S):
+    rate = degrees(answer.rate)
+    if answer.rate < radians(LEAST_PITCH_RATE_DEG_S):
         shown, least = distinct_texts(rate, LEAST_PITCH_RATE_DEG_S, 2, "g")
         return Because(
             "small", f"a correction: the {loop.rate_said} moved by {shown} deg/s only (at least {least})"
@@ -160,16 +160,16 @@ def _told(
     asked = not hidden and not _is_swept(maneuver) and not closes_pitch_loop(maneuver.mode)
     odds, flown = None, [(test.start_s, test.end_s) for test in tests]
     if asked and loop.rate in motion:
-        odds = odds_of_own_input(span, moved, motion[loop.rate], motion.get(loop.angle), found.effect, flown)
+        odds = odds_of_own_input(span, moved, motion[loop.rate], motion.get(loop.angle), answer.effect, flown)
     # For an elevator moved from outside, no other evidence is needed to separate cause from effect.
     outside = is_manual(maneuver.mode) or moves_in_sharp_steps(maneuver, control)
-    error = found.relative_error if outside else found.external_error
+    error = answer.relative_error if outside else answer.external_error
     if error > LARGEST_ERROR:
-        known = "not at all"
+        share = "not at all"
         if isfinite(error) and error < 1.0:
             shown, most = distinct_texts(100.0 * error, 100.0 * LARGEST_ERROR)
-            known = f"to {shown} % only (limit {most})"
-        return Because("no_information", f"the {control}'s effect on the {loop.rate_said} is known {known}")
+            share = f"to {shown} % only (limit {most})"
+        return Because("no_information", f"the {control}'s effect on the {loop.rate_said} is known {share}")
     if odds is not None and odds.probability < LEAST_PROBABILITY:
         return _as_hands(odds, control)
     part = span if odds is None else _part(span, odds, moved)
@@ -198,8 +198,8 @@ def _part(span: Span, odds: Odds, control: Channel) -> Span:
     ends_s = min(odds.ends_s, span.last_step_s)
     end_s = span.end_s if ends_s == span.last_step_s else min(ends_s + FREE_S[0], span.end_s)
     mark = Mark(odds.begins_s, ends_s, free_s=max(end_s - ends_s, 0.0))
-    found = marked_span(mark, control.cut(*mark.reach))
-    return replace(found, end_s=end_s, closed_by=span.closed_by) if found.steps else span
+    marked = marked_span(mark, control.cut(*mark.reach))
+    return replace(marked, end_s=end_s, closed_by=span.closed_by) if marked.steps else span
 
 
 def _is_swept(maneuver: Maneuver) -> bool:

@@ -41,8 +41,8 @@ class Pulses:
         pulses = np.full((len(rows), len(outputs)), np.nan)
         for k, (n, bank) in enumerate(zip(outputs, banks, strict=True)):
             newest = np.maximum.accumulate(np.where(self.ports == bank, rows, -1))
-            known = of_last & (newest > before)
-            pulses[known, k] = self.raw[newest[known], (n - 1) % size]
+            complete = of_last & (newest > before)
+            pulses[complete, k] = self.raw[newest[complete], (n - 1) % size]
         return pulses[len(rows) - len(self.columns.order) :]
 
     def source(self, outputs: Sequence[int]) -> str:

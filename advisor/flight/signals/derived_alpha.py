@@ -137,14 +137,14 @@ def _angles(
     theta, bank, speed = around.get("theta"), around.get("bank"), around.get("airspeed")
     if theta is None or len(theta) == 0:
         return np.empty(0), np.empty(0)
-    known = (climb.t >= theta.t[0]) & (climb.t <= theta.t[-1])
-    t = climb.t[known]
+    within = (climb.t >= theta.t[0]) & (climb.t <= theta.t[-1])
+    t = climb.t[within]
     v = np.full(len(t), np.nan)
     if speed is not None and len(speed):
         v = np.interp(t, speed.t, speed.y)
     if airspeed_m_s is not None:
         v = np.where(v > SLOWEST_FLIGHT_M_S, v, airspeed_m_s)
     rolled = np.interp(t, bank.t, bank.y) if bank is not None and len(bank) else np.zeros(len(t))
-    alpha = derived_alpha(climb.y[known], v, np.interp(t, theta.t, theta.y), rolled)
+    alpha = derived_alpha(climb.y[within], v, np.interp(t, theta.t, theta.y), rolled)
     good = np.isfinite(alpha)
     return t[good], alpha[good]

@@ -57,9 +57,9 @@ class Extremes:
     @property
     def course(self) -> Course:
         """Smallest and largest values of the channel so far."""
-        known = np.flatnonzero(self._high >= self._low)
-        t = np.asarray(self._begin_s + (known + 0.5) * self._length_s, dtype=np.float64)
-        return Course(t, self._low[known], self._high[known])
+        filled = np.flatnonzero(self._high >= self._low)
+        t = np.asarray(self._begin_s + (filled + 0.5) * self._length_s, dtype=np.float64)
+        return Course(t, self._low[filled], self._high[filled])
 
     def _halve(self) -> None:
         """Join neighbouring stretches, so that each is twice as long."""

@@ -54,23 +54,23 @@ def repaired(channel: Channel) -> Repaired:
     """Return a manoeuvre's channel with samples removed or corrected that no aircraft can have flown."""
     if channel.name not in _WATCHED or len(channel) < _FEWEST:
         return Repaired(channel)
-    found, said = channel, []
+    mended, said = channel, []
     if channel.name == "alpha" and np.any(channel.y > pi):
-        found = replace(channel, y=np.where(channel.y > pi, channel.y - 2.0 * pi, channel.y))
+        mended = replace(channel, y=np.where(channel.y > pi, channel.y - 2.0 * pi, channel.y))
         said.append(
             "The angle of attack is sent from 0 to 360 deg: values above 180 deg are read as negative."
         )
-    if channel.name == "airspeed" and (dead := _dropped_out(found)).any():
-        at = f"{clock(float(found.t[dead][0]))} to {clock(float(found.t[dead][-1]))}"
+    if channel.name == "airspeed" and (dead := _dropped_out(mended)).any():
+        at = f"{clock(float(mended.t[dead][0]))} to {clock(float(mended.t[dead][-1]))}"
         said.append(f"The air speed drops out from {at} and is bridged.")
-        found = replace(found, t=found.t[~dead], y=found.y[~dead])
-    wild = _wild(found.y)
+        mended = replace(mended, t=mended.t[~dead], y=mended.y[~dead])
+    wild = _wild(mended.y)
     n = int(np.count_nonzero(wild))
     if 0 < n <= _MOST * len(wild):
-        found = replace(found, t=found.t[~wild], y=found.y[~wild])
+        mended = replace(mended, t=mended.t[~wild], y=mended.y[~wild])
         are = "samples are" if n > 1 else "sample is"
         said.append(f"{n} of {len(wild)} {_WATCHED[channel.name]} {are} wild and left out.")
-    return Repaired(found, tuple(said))
+    return Repaired(mended, tuple(said))
 
 
 def _dropped_out(airspeed: Channel) -> NDArray[np.bool_]:

@@ -96,18 +96,18 @@ class Tracks:
     def cut(self, name: str, start_s: float, end_s: float, up_to_order: int | None = None) -> Channel | None:
         """Return a stretch of a channel from the best source with samples there; None without samples. The
         air speed is converted to the true one as far as the log allows."""
-        found = self._cut(name, start_s, end_s, up_to_order)
-        if name != "airspeed" or found is None:
-            return found
+        channel = self._cut(name, start_s, end_s, up_to_order)
+        if name != "airspeed" or channel is None:
+            return channel
         air = (self._cut(n, start_s - _AIR_S, end_s + _AIR_S, up_to_order) for n in AIR_UNITS)
         by_name = {channel.name: channel for channel in air if channel is not None}
         # With a static pressure an aircraft reads its air speed from a pitot tube, and knows no true one.
         if self._logs_true_speed() and "static_pressure" not in by_name:
-            return replace(found, source=f"{found.source}{AS_REPORTED}")
+            return replace(channel, source=f"{channel.source}{AS_REPORTED}")
         if self._speeds_agree(start_s, end_s, up_to_order):
-            return replace(found, source=f"{found.source}{AS_GROUND_SPEED}")
+            return replace(channel, source=f"{channel.source}{AS_GROUND_SPEED}")
         return true_airspeed(
-            found, by_name.get("static_pressure"), by_name.get("altitude"), self._temperature_c
+            channel, by_name.get("static_pressure"), by_name.get("altitude"), self._temperature_c
         )
 
     def _cut(self, name: str, start_s: float, end_s: float, up_to_order: int | None) -> Channel | None:
@@ -146,31 +146,31 @@ class Tracks:
 
     def statuses(self) -> dict[str, ChannelStatus]:
         """Return the arrival status of every channel, from its best source."""
-        found = {name: next(iter(self._candidates(name)), None) for name in UNITS}
-        return {name: track.status for name, track in found.items() if track is not None}
+        best = {name: next(iter(self._candidates(name)), None) for name in UNITS}
+        return {name: track.status for name, track in best.items() if track is not None}
 
     def courses(self) -> dict[str, Course]:
         """Return the extremes of each channel over this power-on, from its best measured source."""
-        found = {name: next(iter(self._candidates(name)), None) for name in UNITS}
-        return {name: track.extremes.course for name, track in found.items() if isinstance(track, Track)}
+        best = {name: next(iter(self._candidates(name)), None) for name in UNITS}
+        return {name: track.extremes.course for name, track in best.items() if isinstance(track, Track)}
 
     def _candidates(self, name: str) -> list[Track | DerivedAlpha]:
         """Return the possible tracks of a channel, the preferred source first."""
         preferred = self._sources.get(name)
         if preferred is None:
             return [track for (channel, _), track in self._tracks.items() if channel == name]
-        found: list[Track | DerivedAlpha] = []
+        tracks: list[Track | DerivedAlpha] = []
         for source in preferred:
             if (name, source) in self._tracks:
-                found.append(self._tracks[name, source])
+                tracks.append(self._tracks[name, source])
             elif source == DERIVED_ALPHA and self._derived.exists:
-                found.append(self._derived)
-        return found
+                tracks.append(self._derived)
+        return tracks
 
     def _best(self, name: str) -> Track | None:
         """Return the track of the best measured source of a channel; None without samples."""
-        found = (self._tracks.get((name, source)) for source in self._sources[name])
-        return next((track for track in found if track is not None), None)
+        tracks = (self._tracks.get((name, source)) for source in self._sources[name])
+        return next((track for track in tracks if track is not None), None)
 
 
 _LARGEST_ALPHA_RAD = 0.7

@@ -101,8 +101,8 @@ def frozen(ranges: Mapping[str, tuple[float, float]]) -> list[Distrust]:
 
 def distrusted(channels: Mapping[str, Channel]) -> list[Distrust]:
     """Return the frozen channels of one stretch of flight; empty if all change."""
-    told = {name: c for name, c in channels.items() if len(c) >= _LEAST_SAMPLES}
-    return frozen({name: (float(np.min(c.y)), float(np.max(c.y))) for name, c in told.items()})
+    sampled = {name: c for name, c in channels.items() if len(c) >= _LEAST_SAMPLES}
+    return frozen({name: (float(np.min(c.y)), float(np.max(c.y))) for name, c in sampled.items()})
 
 
 def _stands_still(name: str, value: float) -> Distrust:

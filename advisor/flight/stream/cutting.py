@@ -110,11 +110,11 @@ class Cutting:
     def flown(self, span: Span, boot: int, up_to_order: int | None) -> list[FlightEvent]:
         """Return the event of a finished movement: a manoeuvre, or an activity with its reason."""
         maneuver, evidence = self._cut(span, boot, up_to_order)
-        found = self._judged(maneuver, up_to_order)
-        if isinstance(found, Because):
-            return [self._activity(maneuver, found)]
-        if found is not span:
-            span = found
+        verdict = self._judged(maneuver, up_to_order)
+        if isinstance(verdict, Because):
+            return [self._activity(maneuver, verdict)]
+        if verdict is not span:
+            span = verdict
             maneuver, evidence = self._cut(span, boot, up_to_order)
         if self._lateral and (sides := self._beside(span, up_to_order)):
             joint = self._claim(span, SideInput(sides), boot, up_to_order)
@@ -135,16 +135,16 @@ class Cutting:
         ]
         return with_elevator(SideMovement(PITCH, span), sides)
 
-    def _claim(self, span: Span, found: SideInput, boot: int, up_to_order: int | None) -> Span | None:
+    def _claim(self, span: Span, side_input: SideInput, boot: int, up_to_order: int | None) -> Span | None:
         """Return the common extent of an input of several controls, whose lateral record becomes due.
 
         None if aileron and rudder made no test input of their own.
         """
-        joint = at_once(span, SideInput((SideMovement(PITCH, span), *found.movements)))
-        sideways = replace(joint, kind=named(found), steps=found.main.span.steps)
-        if self.is_no_side_input(self.side(sideways, boot, up_to_order)[0], found, up_to_order):
+        joint = at_once(span, SideInput((SideMovement(PITCH, span), *side_input.movements)))
+        sideways = replace(joint, kind=named(side_input), steps=side_input.main.span.steps)
+        if self.is_no_side_input(self.side(sideways, boot, up_to_order)[0], side_input, up_to_order):
             return None
-        stretch = SideStretch(up_to_order, sideways, found, boot)
+        stretch = SideStretch(up_to_order, sideways, side_input, boot)
         self.side_due.append(stretch)
         self._claimed.append(stretch)
         return joint
@@ -152,15 +152,15 @@ class Cutting:
     def claims(self, span: Span, up_to_order: int | None) -> bool:
         """Return whether an input of all controls that is already complete overlaps a span."""
         return any(
-            one.span.start_s < span.last_step_s and span.start_s < one.span.last_step_s
-            for one in self._claimed
-            if up_to_order is None or (one.order is not None and one.order <= up_to_order)
+            stretch.span.start_s < span.last_step_s and span.start_s < stretch.span.last_step_s
+            for stretch in self._claimed
+            if up_to_order is None or (stretch.order is not None and stretch.order <= up_to_order)
         )
 
     def side_events(self, stretch: SideStretch) -> list[FlightEvent]:
         """Return the event of a stretch of aileron and rudder; empty where the stretch is no test input."""
         maneuver, evidence = self.side(stretch.span, stretch.boot, stretch.order)
-        if stretch.swept and self.is_no_side_input(maneuver, stretch.found, stretch.order):
+        if stretch.swept and self.is_no_side_input(maneuver, stretch.side_input, stretch.order):
             return []
         return self.side_counted(maneuver, evidence)
 
@@ -183,14 +183,14 @@ class Cutting:
         moved = part_of_input([SideMovement(loop, span) for loop, span in spans.items()])
         if said is not None:
             # The loop moves the other controls.
-            moved = tuple(one for one in moved if said.moves(one.loop.control)) or moved
-        rest = all(one.rests_by(mark.end_s) for one in moved)
+            moved = tuple(m for m in moved if said.moves(m.loop.control)) or moved
+        rest = all(m.rests_by(mark.end_s) for m in moved)
         if said is not None and len(moved) > 1 and rest and not self.pilot_flies(mark.end_s):
             # After the mark the autopilot's loop moves the surfaces. An input at once does not need this
             # motion. A doublet does: the loop is the second input that separates the derivatives.
             spans = {loop: replace(span, end_s=mark.end_s) for loop, span in spans.items()}
-            moved = tuple(SideMovement(one.loop, spans[one.loop]) for one in moved)
-        sides = tuple(one for one in moved if one.loop is not PITCH) if self._lateral else ()
+            moved = tuple(SideMovement(m.loop, spans[m.loop]) for m in moved)
+        sides = tuple(m for m in moved if m.loop is not PITCH) if self._lateral else ()
         swept = mark.by == "system id"
         pitching = spans[PITCH]
         if said is not None:
@@ -205,23 +205,23 @@ class Cutting:
                 self._counted(maneuver, evidence) if because is None else [self._activity(maneuver, because)]
             )
         if sides:
-            found = SideInput(sides)
-            kind = named(found) if said is None else said.kind(SIDE_KINDS, named(found))
-            span = replace(at_once(found.main.span, SideInput(moved)), kind=kind)
-            self.side_due.append(SideStretch(up_to_order, span, found, boot, swept))
+            side_input = SideInput(sides)
+            kind = named(side_input) if said is None else said.kind(SIDE_KINDS, named(side_input))
+            span = replace(at_once(side_input.main.span, SideInput(moved)), kind=kind)
+            self.side_due.append(SideStretch(up_to_order, span, side_input, boot, swept))
         return events
 
-    def is_no_side_input(self, maneuver: Maneuver, found: SideInput, up_to_order: int | None) -> bool:
+    def is_no_side_input(self, maneuver: Maneuver, side_input: SideInput, up_to_order: int | None) -> bool:
         """Return whether no movement in an input of aileron and rudder is a test input."""
         on_ground = self.why_on_ground(maneuver.span, up_to_order)
         passed_over = self._marks.script_passes_over(maneuver.span, up_to_order)
-        for one in found.movements:
-            if one.loop.control not in maneuver.channels:
+        for part in side_input.movements:
+            if part.loop.control not in maneuver.channels:
                 continue
-            alone = replace(one.span, record_from_s=maneuver.span.record_from_s, end_s=maneuver.span.end_s)
-            motion = self.motion_before(alone, one.loop, up_to_order)
-            moved, tests = replace(maneuver, span=alone), self._tests.get(one.loop.control, ())
-            extent = judged(moved, on_ground, motion, None, one.loop, tests, passed_over=passed_over)
+            alone = replace(part.span, record_from_s=maneuver.span.record_from_s, end_s=maneuver.span.end_s)
+            motion = self.motion_before(alone, part.loop, up_to_order)
+            moved, tests = replace(maneuver, span=alone), self._tests.get(part.loop.control, ())
+            extent = judged(moved, on_ground, motion, None, part.loop, tests, passed_over=passed_over)
             if isinstance(extent, Span):
                 return False
         return True
@@ -242,16 +242,16 @@ class Cutting:
         self._released = (maneuver.boot, maneuver.span.end_s)
         if self._sign is None or "elevator" not in maneuver.channels:
             return [*news, ManeuverFlown(maneuver)]
-        maneuver, found = self._sign.right(maneuver)
-        return [*news, *found, ManeuverFlown(maneuver)]
+        maneuver, notices = self._sign.right(maneuver)
+        return [*news, *notices, ManeuverFlown(maneuver)]
 
     def why_on_ground(self, span: Span, up_to_order: int | None = None) -> str | None:
         """Return evidence that the aircraft was on the ground during a movement; None without evidence."""
         return why_on_ground(span, partial(self._tracks.cut, up_to_order=up_to_order), self._limits)
 
     def _not_an_input(self, maneuver: Maneuver, up_to_order: int | None) -> Because | None:
-        found = self._judged(maneuver, up_to_order)
-        return found if isinstance(found, Because) else None
+        verdict = self._judged(maneuver, up_to_order)
+        return verdict if isinstance(verdict, Because) else None
 
     def _judged(self, maneuver: Maneuver, up_to_order: int | None) -> Because | Span:
         span = maneuver.span
@@ -316,11 +316,11 @@ class Cutting:
         """Return the next manoeuvre of an axis from its recorded channels, with its evidence."""
         length = (span.record_from_s, span.end_s)
         examined = axis.so_far(channels, *length) if grows else axis.examined(channels)
-        found = {**examined.channels, **self._air(span, up_to_order)}
+        recorded = {**examined.channels, **self._air(span, up_to_order)}
         mode = self._stay(_middle_s(span))[1]
         maneuver = Maneuver(
-            axis.counted + 1, boot, span, found, mode, findings=examined.findings, data_notes=tuple(notes),
-            before=self._before(found, span.record_from_s, up_to_order),
+            axis.counted + 1, boot, span, recorded, mode, findings=examined.findings, data_notes=tuple(notes),
+            before=self._before(recorded, span.record_from_s, up_to_order),
         )  # fmt: skip
         return maneuver, examined.evidence
 
@@ -354,24 +354,24 @@ class Cutting:
         self, recorded: Mapping[str, Channel], record_from_s: float, up_to_order: int | None
     ) -> dict[str, Channel]:
         """Return the commands before a record, from the same sources as in the record."""
-        found = {}
+        commands = {}
         for name in recorded.keys() & set(CONTROLS):
             until_s = np.nextafter(recorded[name].t[0], -np.inf)
             before = self._tracks.cut(name, record_from_s - BEFORE_S, until_s, up_to_order)
             if before is not None and before.source == recorded[name].source:
-                found[name] = repaired(counted_once(before)).channel
-        return found
+                commands[name] = repaired(counted_once(before)).channel
+        return commands
 
     def _air(self, span: Span, up_to_order: int | None) -> dict[str, Channel]:
         """Return the channels of a record for the air density and the wind."""
         cut = {name: self._whole(name, span, up_to_order) for name in AIR_UNITS}
-        found = {name: air for name, air in cut.items() if air is not None}
+        air_channels = {name: air for name, air in cut.items() if air is not None}
         north, east, heading = (
             self._whole(name, span, up_to_order) for name in ("wind_north", "wind_east", "heading")
         )
         if north is None or east is None or heading is None:
-            return found
-        return found | along_heading(north, east, heading)
+            return air_channels
+        return air_channels | along_heading(north, east, heading)
 
     def _whole(self, name: str, span: Span, up_to_order: int | None) -> Channel | None:
         return self._tracks.cut(name, span.record_from_s, span.end_s, up_to_order)

@@ -31,8 +31,8 @@ def decoded(columns: Columns, t: FloatArray, aircraft: Aircraft, companion: bool
     companion
         Whether another component than the autopilot sent the messages.
     """
-    found = quantities(columns, t)
-    yield from map(of_companion, found) if companion else found
+    measured = quantities(columns, t)
+    yield from map(of_companion, measured) if companion else measured
     if columns.name == "ATTITUDE" and aircraft.airspeed_m_s is not None:
         yield given_airspeed(columns, t, aircraft.airspeed_m_s)
     if columns.name == "NAMED_VALUE_FLOAT":
@@ -58,8 +58,8 @@ def power_on(
     modes
         Vehicle time of each flight mode change, s, and the mode's name.
     """
-    found = {name: tracks.cut(name, -np.inf, np.inf) for name in ALL_UNITS}
-    channels = {name: who.identified(c) for name, c in found.items() if c is not None}
+    cuts = {name: tracks.cut(name, -np.inf, np.inf) for name in ALL_UNITS}
+    channels = {name: who.identified(c) for name, c in cuts.items() if c is not None}
     if is_backwards and "elevator" in channels:
         channels["elevator"] = replace(channels["elevator"], y=-channels["elevator"].y)
     heard = [(master.order, master.t) for master in clock if len(master.t)]

@@ -76,8 +76,8 @@ class ElevatorPath:
         for new in arrived:
             if new.message == self._message:
                 self.heard = frozenset(new.surface.outputs)
-                for known in self._mixing.take(new, closes_loop):
-                    events += [known] if isinstance(known, Notice) else self._follow([known])
+                for mixed in self._mixing.take(new, closes_loop):
+                    events += [mixed] if isinstance(mixed, Notice) else self._follow([mixed])
         return events
 
     def finish(self, master_s: float) -> list[FlightEvent]:
@@ -103,11 +103,11 @@ class ElevatorPath:
             arrived += zip(new.order.tolist(), new.t.tolist(), new.y.tolist(), strict=True)
         for order, t, y in sorted(arrived):
             self._marks.advance(order)
-            for found in self._watch.push(t, order, y):
-                if isinstance(found, Span):
-                    events += self._found(found, order)
-                elif self._cutting.pilot_flies(found.at_s):
-                    events.append(found)
+            for event in self._watch.push(t, order, y):
+                if isinstance(event, Span):
+                    events += self._found(event, order)
+                elif self._cutting.pilot_flies(event.at_s):
+                    events.append(event)
             events += self._marked(self._marks.due(self._watch.newest_s - SETTLE_S), order)
         return events
 

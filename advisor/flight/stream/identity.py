@@ -107,10 +107,10 @@ class Identity:
             "and wind makes the derivatives wrong."
         )
 
-    def distrusts(self, found: Sequence[Distrust]) -> list[Distrust]:
+    def distrusts(self, distrusted: Sequence[Distrust]) -> list[Distrust]:
         """Return the wrong channels among the distrusted ones, except for the bundled aircraft's constant air
         speed."""
-        return [d for d in found if not (self.simulated and d.channel == "airspeed")]
+        return [d for d in distrusted if not (self.simulated and d.channel == "airspeed")]
 
     def learn(self, piece: Sequence[Columns], now_s: float = nan, flown: bool = False) -> list[FlightEvent]:
         """Take messages of which at most the first changes the identity.
@@ -168,11 +168,11 @@ class Identity:
 
     def _heartbeat(self, columns: Columns) -> list[FlightEvent]:
         events: list[FlightEvent] = []
-        known = len(self._finder.others)
+        before = len(self._finder.others)
         if self._finder.hear(columns):
             assert self._finder.vehicle is not None
             events += [VehicleFound(self._finder.vehicle), *self.outputs.follow()]
-        if len(self._finder.others) > known:
+        if len(self._finder.others) > before:
             others = ", ".join(str(n) for n in sorted(self._finder.others))
             events.append(
                 Notice(
@@ -218,7 +218,7 @@ class Identity:
             self.simulated = True
         words = text.split()
         if len(words) > 1 and words[0].startswith(b"Ardu") and words[1][:1] == b"V":
-            told = printable(words[1][1:].decode("ascii", "replace"))
-            if told.startswith(self._firmware.get(columns.system, "")):
-                self._version_told(columns.system, told)
+            version = printable(words[1][1:].decode("ascii", "replace"))
+            if version.startswith(self._firmware.get(columns.system, "")):
+                self._version_told(columns.system, version)
         return []

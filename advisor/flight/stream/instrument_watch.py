@@ -59,8 +59,8 @@ class InstrumentWatch:
             self._examine(max(self._at_s, first_s), now_s)
 
     def _examine(self, start_s: float, end_s: float) -> None:
-        found = {name: self._cut(name, start_s, end_s) for name in UNITS}
-        channels = {name: c for name, c in found.items() if c is not None}
+        cuts = {name: self._cut(name, start_s, end_s) for name in UNITS}
+        channels = {name: c for name, c in cuts.items() if c is not None}
         for stretches in (self.pitch, self.sideways):
             examined = stretches.examined(channels)
             self._moving += "theta_scale" in examined.evidence

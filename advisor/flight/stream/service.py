@@ -85,17 +85,17 @@ class Service:
             # As nearly always: no moment of judgement has passed.
             self._newest_s = max(self._newest_s, newest_s)
             return []
-        told: list[NoData | DataAgain] = []
+        news: list[NoData | DataAgain] = []
         for now_s in np.unique(np.concatenate([c.arrival_s for c in columns])).tolist():
             if now_s > self._newest_s + PAUSE_S:
                 self._due_s = now_s + WINDOW_S
                 self._since_s = None
             while self._due_s <= now_s:
-                told += self._look(self._due_s)
+                news += self._look(self._due_s)
                 self._due_s += STEP_S
             self._newest_s = max(self._newest_s, now_s)
         self._forget()
-        return told
+        return news
 
     def _forget(self) -> None:
         """Drop times of arrival that no later judgement needs."""
@@ -107,20 +107,20 @@ class Service:
         del self._clock[: sum(arrival_s <= oldest_s for arrival_s, _ in self._clock[:-1])]
 
     def _look(self, now_s: float) -> list[NoData | DataAgain]:
-        found = tuple(self._judge(self._lately(now_s), now_s))
-        standing = frozenset(problem.code for problem in found)
+        problems = tuple(self._judge(self._lately(now_s), now_s))
+        standing = frozenset(problem.code for problem in problems)
         if standing != self._standing or self._since_s is None:
             self._standing, self._since_s = standing, now_s
         stood_s = now_s - self._since_s
-        told = {problem.code for problem in self.problems}
-        self.serves = not found and not told
-        if told and not found and stood_s >= SERVED_AFTER_S:
+        reported = {problem.code for problem in self.problems}
+        self.serves = not problems and not reported
+        if reported and not problems and stood_s >= SERVED_AFTER_S:
             self.problems, self.serves = (), True
             return [DataAgain(self._vehicle_s(now_s))]
-        if standing == told or not found or stood_s < LAPSED_AFTER_S:
+        if standing == reported or not problems or stood_s < LAPSED_AFTER_S:
             return []
-        self.problems = found
-        return [] if standing < told else [NoData(found, self._vehicle_s(now_s))]
+        self.problems = problems
+        return [] if standing < reported else [NoData(problems, self._vehicle_s(now_s))]
 
     def _vehicle_s(self, now_s: float) -> float:
         """Return the vehicle's clock at a time of arrival, s; NaN before its first reading."""
@@ -128,11 +128,11 @@ class Service:
 
     def _lately(self, now_s: float) -> dict[str, ChannelStatus]:
         """Return the arrival status of every channel within the window, from its fastest source."""
-        found: dict[str, ChannelStatus] = {}
+        statuses: dict[str, ChannelStatus] = {}
         for (channel, source), times in self._arrivals.items():
             heard = np.array(times)
             newest = heard[(heard > now_s - WINDOW_S) & (heard <= now_s)]
             rate_hz = len(newest) / WINDOW_S
-            if len(newest) and (channel not in found or rate_hz > found[channel].rate_hz):
-                found[channel] = ChannelStatus(source, "", rate_hz, WINDOW_S, float(newest[-1]))
-        return found
+            if len(newest) and (channel not in statuses or rate_hz > statuses[channel].rate_hz):
+                statuses[channel] = ChannelStatus(source, "", rate_hz, WINDOW_S, float(newest[-1]))
+        return statuses

@@ -184,7 +184,7 @@ class StreamState:
     def problems(self) -> list[Problem]:
         """Return the reasons why the stream so far cannot be used; empty for a usable stream."""
         flown = self._cutting
-        found = problems(
+        obstacles = problems(
             self.vehicle,
             self.other_systems,
             self.elevator,
@@ -196,12 +196,12 @@ class StreamState:
         )
         wrong = self._mixing.contradiction
         if self.guess is not None and isinstance(self.elevator, Problem):
-            found = [with_guess(problem, self.guess) for problem in found]
+            obstacles = [with_guess(problem, self.guess) for problem in obstacles]
         return [
             *(self.marks.problems() if self._over else ()),
             *([self.senders.seen] if self.senders.seen and not flown.pitch.counted else ()),
             *([wrong] if wrong and not flown.pitch.counted else ()),
-            *found,
+            *obstacles,
         ]
 
     @property
@@ -220,8 +220,8 @@ class StreamState:
         two = self.senders.problem(self._system, now_s) if self._system is not None else None
         # Problems of the vehicle followed come first. The screens offer the other vehicles themselves.
         others = self.other_systems if self.vehicle is None else ()
-        found = problems(self.vehicle, others, self.elevator, channels, 1, {}, (), self.seen)
-        return [*(problem for problem in (two, wrong) if problem), *found]
+        obstacles = problems(self.vehicle, others, self.elevator, channels, 1, {}, (), self.seen)
+        return [*(problem for problem in (two, wrong) if problem), *obstacles]
 
     @property
     def frozen(self) -> list[Distrust]:
@@ -238,8 +238,8 @@ class StreamState:
         sideways = self._cutting.sideways.findings or (
             () if self._cutting.sideways.counted else self._instruments.sideways.findings
         )
-        known = {f.code for f in pitch}
-        return (*pitch, *(f for f in sideways if f.code not in known))
+        codes = {f.code for f in pitch}
+        return (*pitch, *(f for f in sideways if f.code not in codes))
 
     def so_far(self) -> Maneuver | None:
         """Return the present manoeuvre, cut at the newest sample; None between manoeuvres."""

@@ -52,21 +52,21 @@ def problems(
     if vehicle is None:
         return [_no_vehicle(other_systems)]
     if vehicle.no_elevator is not None:
-        found = [vehicle.no_elevator]
+        obstacles = [vehicle.no_elevator]
     else:
         # A frozen angle of attack has a replacement: the one derived from climb rate and air speed.
         dead = {distrust.channel for distrust in still} & {"a_z"}
         alive = {name: status for name, status in channels.items() if name not in dead}
-        found = [
+        obstacles = [
             *_missing(elevator, alive, vehicle, seen),
             *(Problem(d.code, f"{d.sentence}.", f"Fix: {d.fix}.") for d in still if d.stops),
             *_too_slow(alive, vehicle),
         ]
-    if not found and maneuvers == 0:
-        found.append(_no_maneuver(activities))
-    if found and other_systems:
-        found.insert(0, _perhaps_another(vehicle, other_systems))
-    return found
+    if not obstacles and maneuvers == 0:
+        obstacles.append(_no_maneuver(activities))
+    if obstacles and other_systems:
+        obstacles.insert(0, _perhaps_another(vehicle, other_systems))
+    return obstacles
 
 
 def with_guess(problem: Problem, guess: Guess) -> Problem:
@@ -125,20 +125,20 @@ def _missing(
 ) -> list[Problem]:
     mends = vehicle.mends
     if isinstance(elevator, Problem):
-        found, idle = [elevator], False
+        obstacles, idle = [elevator], False
     else:
         idle = _is_without_pulse(elevator, channels, seen)
-        found = [_without_pulse(elevator, vehicle)] if idle else []
+        obstacles = [_without_pulse(elevator, vehicle)] if idle else []
     if vehicle.carrier != "telemetry":
-        return [*found, *_not_logged(elevator, channels, vehicle, idle)]
+        return [*obstacles, *_not_logged(elevator, channels, vehicle, idle)]
     if "q" not in channels:
         # Its stamps are the vehicle's clock: without it no other channel can be placed either.
         text = f"There is no pitch rate: no {mends.called('ATTITUDE')} arrived."
-        found.append(Problem("no_pitch_rate", text, sentence(mends.faster("ATTITUDE"))))
+        obstacles.append(Problem("no_pitch_rate", text, sentence(mends.faster("ATTITUDE"))))
         channels = _sent(seen)
     if isinstance(elevator, Surface) and "elevator" not in channels and not idle:
         outputs = joined_numbers(elevator.outputs)
-        found.append(
+        obstacles.append(
             Problem(
                 "no_elevator",
                 f"Servo output {outputs}, the elevator, never carried a pulse "
@@ -150,7 +150,7 @@ def _missing(
     if "alpha" not in channels and not motion_stands_in(channels):
         absent = " nor ".join(name for name in _MOTION if name not in channels)
         or_else = ", or for AOA_SSA" if vehicle.autopilot == "ardupilot" else ""
-        found.append(
+        obstacles.append(
             Problem(
                 "no_alpha",
                 f"There is no angle of attack, and the motion cannot replace it: no {absent} arrived.",
@@ -158,7 +158,7 @@ def _missing(
                 f"a vane may send {mends.called('NAMED_VALUE_FLOAT')} (alpha.source).",
             )
         )
-    return found
+    return obstacles
 
 
 def _is_without_pulse(
@@ -211,10 +211,10 @@ def _not_logged(
         return []
     if "a_z" not in channels:
         lacks["no_accelerometer"] = ("specific force", "HIGHRES_IMU")
-    told = listed([f"no {what} ({vehicle.mends.called(message)})" for what, message in lacks.values()])
+    lacking = listed([f"no {what} ({vehicle.mends.called(message)})" for what, message in lacks.values()])
     fix = vehicle.mends.present([message for _, message in lacks.values()])
     given = "; or give airspeed_m_s in the aircraft file" if "no_airspeed" in lacks else ""
-    return [Problem(next(iter(lacks)), f"The log holds {told}.", f"{sentence(fix, given)}.")]
+    return [Problem(next(iter(lacks)), f"The log holds {lacking}.", f"{sentence(fix, given)}.")]
 
 
 def motion_stands_in(channels: Collection[str]) -> bool:

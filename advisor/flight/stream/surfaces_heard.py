@@ -91,8 +91,8 @@ class SurfacesHeard:
                 value = read_by(vehicle.autopilot, stated)
                 counts = not flown or (before is None and _follows(was, now))
                 if before is not None:
-                    known = read_by(vehicle.autopilot, before)
-                    events += self._notice(name, value, _changed(name, known, value, at, counts))
+                    old = read_by(vehicle.autopilot, before)
+                    events += self._notice(name, value, _changed(name, old, value, at, counts))
                 elif not counts:
                     events += self._notice(name, value, _too_late(name, value, at))
                 elif isinstance(now, Surface):
@@ -146,10 +146,10 @@ class SurfacesHeard:
         wiring, vehicle = self._wiring(self._vehicle), self._vehicle
         if vehicle is not None and vehicle.no_elevator is not None:
             return vehicle.no_elevator
-        found = find_elevator(self._aircraft.elevator, wiring)
-        if isinstance(found, Problem) and self._taken is not None:
+        surface = find_elevator(self._aircraft.elevator, wiring)
+        if isinstance(surface, Problem) and self._taken is not None:
             return find_elevator(self._taken, wiring, "by a guess that the crew has accepted")
-        return found
+        return surface
 
     def _count(self) -> None:
         """Find the surfaces from all received parameters."""
@@ -157,12 +157,12 @@ class SurfacesHeard:
         if self._vehicle is not None and self._vehicle.is_multicopter:
             self.counted = {}
             return
-        found = {
+        surfaces = {
             "elevator": self._held or self.elevator,
             "aileron": find_side_control("aileron", self._aircraft.aileron, wiring),
             "rudder": find_side_control("rudder", self._aircraft.rudder, wiring),
         }
-        self.counted = {name: surface for name, surface in found.items() if isinstance(surface, Surface)}
+        self.counted = {name: surface for name, surface in surfaces.items() if isinstance(surface, Surface)}
 
     def _settle(self) -> list[FlightEvent]:
         """Find the surfaces from all received parameters, and report the elevator's outputs once."""
@@ -181,13 +181,13 @@ def _follows(was: Surface, now: Surface | Problem) -> bool:
     return now.scale.reversed == was.scale.reversed
 
 
-def _changed(name: str, known: float, value: float, at: str, counts: bool) -> str:
+def _changed(name: str, old: float, value: float, at: str, counts: bool) -> str:
     used = (
         f"the elevator is counted with {value:g} after that"
         if counts
-        else f"the elevator is still counted with {known:g}, because its linkage has not changed"
+        else f"the elevator is still counted with {old:g}, because its linkage has not changed"
     )
-    return f"{name} changed from {known:g} to {value:g}{at}: {used}."
+    return f"{name} changed from {old:g} to {value:g}{at}: {used}."
 
 
 def _too_late(name: str, value: float, at: str) -> str:

@@ -85,9 +85,9 @@ def _passed_channel(n: int, function: int) -> int:
 
 def _passing(roles: Mapping[int, Role], passed: Mapping[int, int], parameters: Parameters) -> dict[int, Role]:
     """Return the roles of outputs that pass a stick through, for controls without another output."""
-    found: dict[int, Role] = {}
+    passing: dict[int, Role] = {}
     for control, (name, usual, role) in _STICKS.items():
-        if not any(one.weight(control) for one in roles.values()):
+        if not any(r.weight(control) for r in roles.values()):
             channel = int(parameters.get(name, usual))
-            found |= {n: role for n, k in passed.items() if k == channel}
-    return found
+            passing |= {n: role for n, k in passed.items() if k == channel}
+    return passing

@@ -57,9 +57,9 @@ class Breaks:
         self._last_s = float(newest[-1])
         self.take_clock(stamps)
         rows = np.flatnonzero((steps >= _LEAST_S) & (arrival_s <= self._until_s))
-        found = [(float(newest[row]), float(stamps[row + 1])) for row in rows]
-        self._missed += found
-        return found
+        gaps = [(float(newest[row]), float(stamps[row + 1])) for row in rows]
+        self._missed += gaps
+        return gaps
 
     def take_clock(self, clock: FloatArray) -> None:
         """Take clock readings, shape (n,), s since boot; the first is the last earlier reading."""

@@ -64,15 +64,15 @@ class Following:
             Messages of one second of arrival, from all senders.
         """
         second = int(min(float(c.arrival_s[0]) for c in piece))
-        found = None
+        replacement = None
         if self._second is not None and second > self._second:
-            found = self._weigh(float(second), vehicle, all_heard)
+            replacement = self._weigh(float(second), vehicle, all_heard)
         self._second = max(second, self._second or second)
         for c in piece:
             kind = "output" if c.name in _OUTPUTS else "attitude" if c.name in _ATTITUDES else ""
             newest = self._heard.setdefault(c.system, {})
             newest[""] = newest[kind] = float(c.arrival_s[-1])
-        return found
+        return replacement
 
     def _weigh(self, now_s: float, vehicle: Vehicle, all_heard: Sequence[Vehicle]) -> Vehicle | None:
         if self._qualifies(vehicle, now_s):

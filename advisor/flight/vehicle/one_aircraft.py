@@ -43,7 +43,7 @@ class OneAircraft:
         first_name, first = self._elevator = self._elevator or (name, elevator)
         if elevator.outputs == first.outputs and _scales_agree(elevator, first):
             return ""
-        outputs, before = (" + ".join(map(str, one.outputs)) for one in (elevator, first))
+        outputs, before = (" + ".join(map(str, surface.outputs)) for surface in (elevator, first))
         return (
             f"{name}: the elevator is output {outputs} with a scale of its own, and output {before} in "
             f"{first_name}; both count as one aircraft."

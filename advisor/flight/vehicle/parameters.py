@@ -79,12 +79,12 @@ class Parameters:
 
     def keep(self, sender: Sender, name: str, stated: Stated | None) -> None:
         """Store a value as the sender's present one; None removes it."""
-        known = self._known.setdefault(sender, {})
+        values = self._known.setdefault(sender, {})
         self._wired.clear()
         if stated is None:
-            known.pop(name, None)
+            values.pop(name, None)
         else:
-            known[name] = stated
+            values[name] = stated
 
     def stated(self, senders: Sequence[Sender], autopilot: str) -> dict[str, float]:
         """Return the known parameters of the given senders, by name. The last sender overrides earlier

@@ -52,12 +52,12 @@ def _seconds(columns: Sequence[Columns]) -> list[int]:
 
 def rows_between(columns: Sequence[Columns], first: int, past: int) -> list[Columns]:
     """Return the rows with ``first <= order < past``, without message types that have no such row."""
-    found = []
+    pieces = []
     for c in columns:
         i, j = np.searchsorted(c.order, [first, past])
         if j > i:
-            found.append(cut(c, slice(int(i), int(j))))
-    return found
+            pieces.append(cut(c, slice(int(i), int(j))))
+    return pieces
 
 
 def _turning_points(c: Columns) -> list[int]:

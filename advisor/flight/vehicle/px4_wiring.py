@@ -72,16 +72,16 @@ def banks(parameters: Parameters) -> list[str]:
 
 def servo_outputs(parameters: Parameters) -> list[ServoOutput]:
     """Return the first output of each servo. Without a known function, servo n is at output n + 1."""
-    found: dict[int, ServoOutput] = {}
+    outputs: dict[int, ServoOutput] = {}
     for bank, group in enumerate(banks(parameters)):
         for k in OUTPUTS:
             servo = int(parameters.get(f"{group}_FUNC{k}", 0.0)) - _SERVO_1
             if servo in _SERVOS:
                 output = ServoOutput(16 * bank + k, servo, _scale(group, k, parameters))
-                found.setdefault(servo, output)
+                outputs.setdefault(servo, output)
     if not banks(parameters):
-        found = {servo: ServoOutput(servo + 1, servo, GROUPS["PWM_MAIN"]) for servo in _SERVOS}
-    return list(found.values())
+        outputs = {servo: ServoOutput(servo + 1, servo, GROUPS["PWM_MAIN"]) for servo in _SERVOS}
+    return list(outputs.values())
 
 
 def px4_wiring(parameters: Parameters) -> Wiring:

@@ -165,8 +165,8 @@ class Surface:
             return self
         if {part.demand for part in kept} != {part.demand for part in self.parts}:
             return None
-        told = joined_numbers([n for n in self.outputs if n in silent])
-        has = f"Outputs {told} carry" if len(self.parts) - len(kept) > 1 else f"Output {told} carries"
+        muted = joined_numbers([n for n in self.outputs if n in silent])
+        has = f"Outputs {muted} carry" if len(self.parts) - len(kept) > 1 else f"Output {muted} carries"
         counts = joined_numbers([part.output for part in kept])
         return replace(
             self,

@@ -18,8 +18,8 @@ _RECORD = f"Record the vehicle's parameters, or {_GIVE}."
 
 def limits(names: Names, stated: Mapping[str, float], usual: Scale) -> tuple[Scale, Problem | None]:
     """Return the scale of an output, and the problem of its assumed limits; None if all are stated."""
-    known = [stated.get(name) for name in names]
-    wrong = _contradiction(names, known)
+    heard = [stated.get(name) for name in names]
+    wrong = _contradiction(names, heard)
     if wrong:
         assumed = f"{usual.low_us:g}, {usual.trim_us:g} and {usual.high_us:g} us"
         return usual, Problem(
@@ -27,10 +27,10 @@ def limits(names: Names, stated: Mapping[str, float], usual: Scale) -> tuple[Sca
             f"{wrong}; {assumed} are assumed.",
             f"Set {names[0]}, {names[1]} and {names[2]} to rising pulses, or {_GIVE}.",
         )
-    scale = _completed(known, usual)
+    scale = _completed(heard, usual)
     absent = [
         f"{name} {value:g}"
-        for name, given, value in zip(names, known, (scale.low_us, scale.trim_us, scale.high_us), strict=True)
+        for name, given, value in zip(names, heard, (scale.low_us, scale.trim_us, scale.high_us), strict=True)
         if given is None
     ]
     if not absent:
@@ -53,9 +53,9 @@ def assumed_limits(output: int, scale: Scale) -> Problem:
     )
 
 
-def _contradiction(names: Names, known: list[float | None]) -> str:
+def _contradiction(names: Names, heard: list[float | None]) -> str:
     """Return the reason in words why no linkage can have the stated limits; empty for possible limits."""
-    given = [(name, value) for name, value in zip(names, known, strict=True) if value is not None]
+    given = [(name, value) for name, value in zip(names, heard, strict=True) if value is not None]
     for name, value in given:
         if value <= 0.0:
             return f"{name} is {value:g}, which is no pulse"
@@ -70,10 +70,10 @@ def _contradiction(names: Names, known: list[float | None]) -> str:
     return ""
 
 
-def _completed(known: list[float | None], usual: Scale) -> Scale:
+def _completed(heard: list[float | None], usual: Scale) -> Scale:
     """Return the stated limits, completed by usual ones on the right side of zero."""
-    given = [value for value in known if value is not None]
-    low, trim, high = known
+    given = [value for value in heard if value is not None]
+    low, trim, high = heard
     low = min([usual.low_us, *given]) if low is None else low
     high = max([usual.high_us, *given]) if high is None else high
     if trim is None:

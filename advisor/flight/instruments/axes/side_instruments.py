@@ -75,13 +75,13 @@ def sideslip_against_motion(channels: Channels) -> Evidence:
     together = fit_delays(stamps, beta, [Summand(t, weight + turn)])
     if apart is None or together is None:
         return {}
-    found = _factors("beta", apart, together)
+    evidence = _factors("beta", apart, together)
     force = channel_at("a_y", t, channels) / channel_at("airspeed", t, channels)
     both = [Summand(t, weight + turn, 1.0), Summand(t, force)]
     with_force = fit_delays(stamps, beta, both) if np.ptp(force) > 0.0 else None
     if with_force is not None:
-        found["beta_by_force"] = with_force.factor(1)
-    return found
+        evidence["beta_by_force"] = with_force.factor(1)
+    return evidence
 
 
 def force_against_motion(channels: Channels) -> Evidence:
@@ -100,9 +100,9 @@ def force_against_motion(channels: Channels) -> Evidence:
     together = fit_delays(force.t, force.y / speed, [Summand(t, weight + turn)], np.zeros(1), drift=1)
     if apart is None or together is None:
         return {}
-    found = _factors("a_y", apart, together)
-    both, per_g = found["a_y_by_motion"], float(np.mean(speed)) / GRAVITY_M_S2
-    return {**found, "a_y_in_g": Measured(both.value * per_g, both.std * per_g)}
+    evidence = _factors("a_y", apart, together)
+    both, per_g = evidence["a_y_by_motion"], float(np.mean(speed)) / GRAVITY_M_S2
+    return {**evidence, "a_y_in_g": Measured(both.value * per_g, both.std * per_g)}
 
 
 def _factors(name: str, apart: DelayedFit, together: DelayedFit) -> dict[str, Measured]:
@@ -139,11 +139,11 @@ def examine_side(channels: Mapping[str, Channel], earlier: Evidence | None = Non
     work = Work(dict(channels), earlier or {})
     if _bank_and_rate(work) and hold_force_unit(work):
         hold_clocks(work, "p", "bank")
-        told = work.learn(sideslip_against_motion(work.channels))
-        if _signs(work, "beta", told, 1.0):
-            told = work.learn(force_against_motion(work.channels))
-            if _signs(work, "a_y", told, -1.0):
-                _side_force_unit(work, told)
+        evidence = work.learn(sideslip_against_motion(work.channels))
+        if _signs(work, "beta", evidence, 1.0):
+            evidence = work.learn(force_against_motion(work.channels))
+            if _signs(work, "a_y", evidence, -1.0):
+                _side_force_unit(work, evidence)
     return work.done
 
 
@@ -247,9 +247,9 @@ def _likelihood(in_g: float) -> float:
     return exp(-0.5 * (log(in_g / _USUAL_IN_G) / _SPREAD) ** 2)
 
 
-def _in_unit(work: Work, stated: str, unit: str, measured: Measured, told: str) -> None:
+def _in_unit(work: Work, stated: str, unit: str, measured: Measured, observation: str) -> None:
     work.contradict(
         "a_y", "unit", stated, unit, measured,
-        f"the side force is in {unit}, not in {stated}: {told} {with_error(measured)}",
+        f"the side force is in {unit}, not in {stated}: {observation} {with_error(measured)}",
         f"send {work.channels['a_y'].source} in {stated}",
     )  # fmt: skip

@@ -71,12 +71,12 @@ class SideInput:
     @property
     def last_step_s(self) -> float:
         """Onset of the last step of all movements, s."""
-        return max(one.span.last_step_s for one in self.movements)
+        return max(movement.span.last_step_s for movement in self.movements)
 
     @property
     def start_s(self) -> float:
         """Onset of the first step of all movements, s."""
-        return min(one.span.start_s for one in self.movements)
+        return min(movement.span.start_s for movement in self.movements)
 
 
 @dataclass(frozen=True, slots=True)
@@ -86,7 +86,7 @@ class SideStretch:
     order: int | None
     """Index of the newest message at which the stretch was complete. None at the end of the messages."""
     span: Span
-    found: SideInput
+    side_input: SideInput
     boot: int
     swept: bool = False
     """Whether the autopilot's SystemID moved the controls, so that each visible effect decides."""
@@ -100,18 +100,18 @@ def with_elevator(elevator: SideMovement, sides: Sequence[SideMovement]) -> tupl
     group = part_of_input([elevator, *sides])
     if elevator not in group:
         return ()
-    return tuple(one for one in group if one is not elevator and _is_meanwhile(one.span, elevator.span))
+    return tuple(m for m in group if m is not elevator and _is_meanwhile(m.span, elevator.span))
 
 
-def _is_meanwhile(one: Span, other: Span) -> bool:
-    common_s = min(one.last_step_s, other.last_step_s) - max(one.start_s, other.start_s)
-    longer_s = max(one.last_step_s - one.start_s, other.last_step_s - other.start_s)
+def _is_meanwhile(span: Span, other: Span) -> bool:
+    common_s = min(span.last_step_s, other.last_step_s) - max(span.start_s, other.start_s)
+    longer_s = max(span.last_step_s - span.start_s, other.last_step_s - other.start_s)
     return common_s >= _MEANWHILE * longer_s > 0.0
 
 
-def at_once(span: Span, found: SideInput) -> Span:
+def at_once(span: Span, side_input: SideInput) -> Span:
     """Return the extent of all controls that move at once, with the steps of one control's movement."""
-    return replace(span, start_s=found.start_s, last_step_s=found.last_step_s)
+    return replace(span, start_s=side_input.start_s, last_step_s=side_input.last_step_s)
 
 
 def first_input(pending: Sequence[SideMovement]) -> tuple[SideInput, list[SideMovement]]:
@@ -124,22 +124,22 @@ def first_input(pending: Sequence[SideMovement]) -> tuple[SideInput, list[SideMo
     """
     first, *others = pending
     group = [first]
-    for one in others:
-        if one.span.start_s <= max(member.span.last_step_s for member in group) + TOGETHER_S:
-            group.append(one)
-    return SideInput(part_of_input(group)), [one for one in others if one not in group]
+    for movement in others:
+        if movement.span.start_s <= max(member.span.last_step_s for member in group) + TOGETHER_S:
+            group.append(movement)
+    return SideInput(part_of_input(group)), [m for m in others if m not in group]
 
 
 def part_of_input(group: Sequence[SideMovement]) -> tuple[SideMovement, ...]:
     """Return the movements that form an input, the largest first, without small ones."""
-    largest = max((one.amplitude for one in group), default=0.0)
+    largest = max((m.amplitude for m in group), default=0.0)
     return tuple(
         sorted((m for m in group if 0.0 < m.amplitude >= BESIDE * largest), key=lambda m: -m.amplitude)
     )
 
 
 def input_span(
-    found: SideInput, following: Sequence[SideMovement], newest_s: float, yaw_rate: Channel | None
+    side_input: SideInput, following: Sequence[SideMovement], newest_s: float, yaw_rate: Channel | None
 ) -> Span:
     """Return the extent of an input with its free response.
 
@@ -152,22 +152,22 @@ def input_span(
     yaw_rate
         Yaw rate during and after the input. None if not received.
     """
-    main, last_s = found.main.span, found.last_step_s
+    main, last_s = side_input.main.span, side_input.last_step_s
     end_s, closed_by = min(last_s + TAIL_S[1], newest_s), "quiet"
-    hard = [one.span for one in found.movements if one.span.closed_by in ("gap", "mode change", "end of log")]
+    hard = [m.span for m in side_input.movements if m.span.closed_by in ("gap", "mode change", "end of log")]
     if hard:
         end_s, closed_by = min(span.end_s for span in hard), hard[0].closed_by
-    for one in following:
-        if one.amplitude >= _NEXT * found.main.amplitude and last_s < one.span.start_s < end_s:
-            end_s, closed_by = one.span.start_s, "next input"
+    for later in following:
+        if later.amplitude >= _NEXT * side_input.main.amplitude and last_s < later.span.start_s < end_s:
+            end_s, closed_by = later.span.start_s, "next input"
             break
     free_s = _free_s(yaw_rate, last_s, end_s)
     if last_s + free_s < end_s:
         end_s, closed_by = last_s + free_s, "quiet"
     return replace(
         main,
-        record_from_s=min(one.span.record_from_s for one in found.movements),
-        start_s=found.start_s,
+        record_from_s=min(m.span.record_from_s for m in side_input.movements),
+        start_s=side_input.start_s,
         last_step_s=last_s,
         end_s=max(end_s, last_s),
         closed_by=closed_by if main.closed_by != "no rest" else "no rest",
@@ -192,18 +192,18 @@ def _free_s(yaw_rate: Channel | None, from_s: float, to_s: float) -> float:
     return float(np.clip(2.0 * PERIODS * half_s, *TAIL_S))
 
 
-def named(found: SideInput) -> InputKind:
+def named(side_input: SideInput) -> InputKind:
     """Return the name of an input that pilots use."""
-    span = found.main.span
-    if len(found.movements) > 1 and len({one.loop for one in found.movements}) > 1:
-        return "multisine" if all(one.span.kind == "multisine" for one in found.movements) else "other"
+    span = side_input.main.span
+    if len(side_input.movements) > 1 and len({m.loop for m in side_input.movements}) > 1:
+        return "multisine" if all(m.span.kind == "multisine" for m in side_input.movements) else "other"
     stepped = "3-2-1-1" if span.kind in ("3-2-1-1", "reverse 3-2-1-1") else span.kind
-    if found.main.loop == YAW:
+    if side_input.main.loop == YAW:
         names: dict[str, InputKind] = {
             "doublet": "rudder doublet", "3-2-1-1": "rudder 3-2-1-1", "pulse": "dutch roll release",
         }  # fmt: skip
         return names.get(stepped, "other")
-    if found.main.loop == ROLL and stepped in ("doublet", "3-2-1-1"):
+    if side_input.main.loop == ROLL and stepped in ("doublet", "3-2-1-1"):
         return "aileron doublet" if stepped == "doublet" else "aileron 3-2-1-1"
     if not _is_one_two_one(span):
         return "other"

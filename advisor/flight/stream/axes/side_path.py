@@ -68,9 +68,9 @@ class SidePath:
             events += self._complete(order)
             # All controls of one message come before a decision: their inputs may end together.
             for _, t, name, y in samples:
-                for found in self._watches[name].push(t, order, y):
-                    if isinstance(found, Span):
-                        self._add(SideMovement(LOOPS[name], found))
+                for event in self._watches[name].push(t, order, y):
+                    if isinstance(event, Span):
+                        self._add(SideMovement(LOOPS[name], event))
             while self._pending and self._is_over():
                 events += self._released(order)
         return [*events, *self._complete(None)]
@@ -102,12 +102,12 @@ class SidePath:
         """Store a movement of aileron or rudder, unless it ends at trim without any level."""
         if movement.amplitude == 0.0:
             return
-        self._pending = sorted([*self._pending, movement], key=lambda one: one.span.start_s)
+        self._pending = sorted([*self._pending, movement], key=lambda m: m.span.start_s)
 
     def _is_over(self) -> bool:
         """Return whether no movement can join or shorten the first input any more."""
-        found, _ = first_input(self._pending)
-        last_s = found.last_step_s
+        side_input, _ = first_input(self._pending)
+        last_s = side_input.last_step_s
         if self._marks.since_s(self._newest_s) is not None:
             return False
         if self._newest_s >= last_s + TAIL_S[1] + SETTLE_S:
@@ -115,36 +115,34 @@ class SidePath:
                 watch.onset_s is not None and watch.onset_s <= last_s + TOGETHER_S
                 for watch in self._watches.values()
             )
-        return any(movement.span.closed_by in ("gap", "mode change") for movement in found.movements)
+        return any(movement.span.closed_by in ("gap", "mode change") for movement in side_input.movements)
 
     def _released(self, up_to_order: int | None) -> list[FlightEvent]:
         """Remove the first input, and return its event; empty if it is no test input."""
-        found, self._pending = first_input(self._pending)
-        last_s = found.last_step_s
+        side_input, self._pending = first_input(self._pending)
+        last_s = side_input.last_step_s
         yaw_rate = self._tracks.cut("r", last_s, last_s + TAIL_S[1], up_to_order)
         ahead = [
             *self._pending,
             *(
-                _begun(watch.onset_s, watch.amplitude, found.main, LOOPS[name])
+                _begun(watch.onset_s, watch.amplitude, side_input.main, LOOPS[name])
                 for name, watch in self._watches.items()
                 if watch.onset_s is not None and up_to_order is not None
             ),
         ]
-        span = input_span(found, sorted(ahead, key=lambda one: one.span.start_s), self._newest_s, yaw_rate)
+        span = input_span(side_input, sorted(ahead, key=lambda m: m.span.start_s), self._newest_s, yaw_rate)
         # A small movement within the record of another input is no input of its own.
-        least_rad = BESIDE * found.main.amplitude
-        self._pending = [
-            one for one in self._pending if one.span.start_s >= span.end_s or one.amplitude >= least_rad
-        ]
+        least_rad = BESIDE * side_input.main.amplitude
+        self._pending = [m for m in self._pending if m.span.start_s >= span.end_s or m.amplitude >= least_rad]
         span = self._marks.before(span)
         maneuver, evidence = self._cutting.side(span, self._boot, up_to_order)
         if (
             self._marks.holds(span)
             or self._cutting.claims(span, up_to_order)
-            or self._cutting.is_no_side_input(maneuver, found, up_to_order)
+            or self._cutting.is_no_side_input(maneuver, side_input, up_to_order)
         ):
             return []
-        named_one = replace(maneuver, span=replace(span, kind=named(found)))
+        named_one = replace(maneuver, span=replace(span, kind=named(side_input)))
         return self._cutting.side_counted(named_one, evidence)
 
 
