@@ -44,8 +44,8 @@ def nested(values: dict[str, Any]) -> dict[str, Any]:
     for path, value in values.items():
         *sections, name = path.split(".")
         section = content
-        for one in sections:
-            section = section.setdefault(one, {})
+        for part in sections:
+            section = section.setdefault(part, {})
         section[name] = value
     return content
 
@@ -57,12 +57,12 @@ def _put(key: Key, values: dict[str, Any]) -> None:
         if text == "-":
             return
         try:
-            found = _value(key, text)
-            parse_aircraft(nested(values | found), "This answer")
+            answer = _value(key, text)
+            parse_aircraft(nested(values | answer), "This answer")
         except (ValueError, ConfigurationError) as error:
             click.echo(f"  {error}", err=True)
         else:
-            values |= found
+            values |= answer
             return
 
 
@@ -101,9 +101,9 @@ def _ask_calibrations(question: str, values: dict[str, Any]) -> None:
                 return
         return
     measured = []
-    for one in several:
-        while (pairs := _pairs(question.format(one["output"]))) is not None:
-            trial = [{**one, "calibration": pairs}]
+    for output in several:
+        while (pairs := _pairs(question.format(output["output"]))) is not None:
+            trial = [{**output, "calibration": pairs}]
             if _taken({"elevator.outputs": trial}):
                 measured += trial
                 break

@@ -136,7 +136,7 @@ def _analyzed(tasks: "Sequence[BatchTask]", out: Path, run: "Run") -> "dict[Path
     from advisor.batch.tables import is_whole
 
     places = {task.log: out / KEPT / f"{task.key}.json" for task in tasks}
-    results = {task.log: known for task in tasks if (known := kept(places[task.log])) and is_whole(known)}
+    results = {task.log: old for task in tasks if (old := kept(places[task.log])) and is_whole(old)}
     to_do = [task for task in tasks if task.log not in results]
     if results:
         click.echo(f"{len(results)} of {len(tasks)} logs were analyzed before.", err=True)

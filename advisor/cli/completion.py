@@ -18,7 +18,7 @@ def command(context: click.Context, shell: str) -> None:
       eval "$(advisor completion zsh)"           in ~/.zshrc, after compinit
       advisor completion fish | source           in ~/.config/fish/config.fish
     """
-    found = get_completion_class(shell)
-    assert found is not None
+    completion = get_completion_class(shell)
+    assert completion is not None
     program = context.find_root().command
-    click.echo(found(program, {}, "advisor", "_ADVISOR_COMPLETE").source())
+    click.echo(completion(program, {}, "advisor", "_ADVISOR_COMPLETE").source())

@@ -116,9 +116,9 @@ def examine_log(log: Path, aircraft: Aircraft, target_system: int | None) -> "Ex
     vehicle = examiner.vehicle
     senders = scanner.statistics.senders
     came = senders.get((vehicle.system, vehicle.component), Received()) if vehicle else Received()
-    found = examiner.findings(repeated_percent=came.repeated_percent, repeated_after_s=came.repeated_after_s)
-    unit_s = found.expectation.unit_s if found.expectation else None
-    return replace(found, notes=(*found.notes, *vibration_of(log, aircraft.columns).notes(unit_s)))
+    state = examiner.findings(repeated_percent=came.repeated_percent, repeated_after_s=came.repeated_after_s)
+    unit_s = state.expectation.unit_s if state.expectation else None
+    return replace(state, notes=(*state.notes, *vibration_of(log, aircraft.columns).notes(unit_s)))
 
 
 def _examine_link(

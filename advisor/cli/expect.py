@@ -59,7 +59,7 @@ def command(asked: LogsAsked, log: Path, file: Path, junit: Path | None, write: 
     problems: tuple[Problem, ...] = ()
     try:
         outcomes = _checked(asked, aircraft, expected)
-        code = 0 if all(one.holds for one in outcomes) else UNMET
+        code = 0 if all(outcome.holds for outcome in outcomes) else UNMET
     except UnusableInputError as error:
         problems, code = error.problems, UNUSABLE
     if junit is not None:
@@ -89,7 +89,7 @@ def _refuse(asked: LogsAsked, log: Path, file: Path, junit: Path | None, write: 
         refuse_unwritable("--write", file)
     if junit is not None:
         refuse_unwritable("--junit", junit)
-        if any(one.exists() and junit.exists() and one.samefile(junit) for one in (log, file, *asked.inputs)):
+        if any(p.exists() and junit.exists() and p.samefile(junit) for p in (log, file, *asked.inputs)):
             raise ConfigurationError(f"--junit: {junit} is an input of the command; name another file.")
 
 
@@ -144,10 +144,10 @@ def _print(outcomes: "list[Outcome]", log: Path) -> None:
 
     if not outcomes:
         return
-    rows = tuple((one.name, one.asked, one.found, "✓" if one.holds else "✗ no") for one in outcomes)
+    rows = tuple((o.name, o.asked, o.found, "✓" if o.holds else "✗ no") for o in outcomes)
     table = Table("expectations", "", ("expectation", "asked", "found", "holds"), rows)
     PlainConsole().print(table.on_console())
-    failed = sum(not one.holds for one in outcomes)
+    failed = sum(not outcome.holds for outcome in outcomes)
     said = (
         "every expectation holds" if not failed else f"{failed} of {len(outcomes)} expectations do not hold"
     )

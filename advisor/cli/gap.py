@@ -155,10 +155,10 @@ def _axis_flown(asked: LogsAsked, aircraft: "Aircraft", by_hand: "Sequence[ByHan
 
     with Stages() as tell:
         tell("reading", 0.0)
-        found = axis_flown(asked.logs, aircraft, asked.target_system, by_hand, asked.marks, asked.no_marks)
-    if found.axis == "lateral":
+        flown = axis_flown(asked.logs, aircraft, asked.target_system, by_hand, asked.marks, asked.no_marks)
+    if flown.axis == "lateral":
         click.echo(_LATERAL, err=True)
-    return found
+    return flown
 
 
 def _refuse_out(out: Path, aircraft_file: Path | None) -> None:

@@ -63,17 +63,17 @@ class GapAsked:
     def attempted(self, part: str, compare: Callable[[], Found]) -> Found | Unanswered:
         """Return a comparison, or the reason why there is none."""
         try:
-            found = attempt(part, compare)
+            comparison = attempt(part, compare)
         except UnusableInputError as error:
             return Unanswered(str(error), gap_document(None, error.problems), UNUSABLE)
-        if isinstance(found, FailedPart):
-            return Unanswered(found.sentence, gap_document(None, failed=(found,)), 0)
-        return found
+        if isinstance(comparison, FailedPart):
+            return Unanswered(comparison.sentence, gap_document(None, failed=(comparison,)), 0)
+        return comparison
 
     def refused(self, *reasons: Unanswered) -> int:
         """Print why axes have no answer, and return the exit code of the first reason."""
         if self.as_json:
-            problems = [one for reason in reasons for one in reason.document["problems"]]
+            problems = [problem for reason in reasons for problem in reason.document["problems"]]
             click.echo(json.dumps({**reasons[0].document, "problems": problems}, indent=1))
         for reason in reasons:
             click.echo(reason.said, err=True)
@@ -86,8 +86,8 @@ class GapAsked:
         if self.as_json:
             click.echo(json.dumps(answers[0].document, allow_nan=False, indent=1))
         else:
-            for one in answers:
-                one.show()
+            for answer in answers:
+                answer.show()
         return max(answer.code for answer in answers)
 
     def improved(self, improves: bool, make: Callable[[], FlownModel]) -> Path | None:

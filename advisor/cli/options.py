@@ -218,7 +218,7 @@ def refuse_unwritable_folder(option: str, folder: Path) -> None:
     """
     if folder.exists() and not folder.is_dir():
         raise ConfigurationError(f"{option}: {folder} is a file; name a folder.")
-    there = next((one for one in (folder, *folder.absolute().parents) if one.exists()), Path("/"))
+    there = next((path for path in (folder, *folder.absolute().parents) if path.exists()), Path("/"))
     if not there.is_dir():
         raise ConfigurationError(f"{option}: {folder} lies below the file {there}; name a folder elsewhere.")
     if not os.access(there, os.W_OK | os.X_OK):

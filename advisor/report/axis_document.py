@@ -32,13 +32,13 @@ def concluded(verdict: FlightTestVerdict) -> dict[str, Any]:
         **picked(verdict, "rule decision sentence criterion_percent limit_percent stopped_at warnings"),
         "by_rule": {
             # Only the rule ``information`` holds quantities to their tolerances.
-            name: picked(one, "stopped_at history_percent hindsight_stopped_at hindsight_percent")
+            name: picked(progress, "stopped_at history_percent hindsight_stopped_at hindsight_percent")
             | (
-                picked(one, "prediction_percent parameter_percent")
-                if one.prediction_percent or one.parameter_percent
+                picked(progress, "prediction_percent parameter_percent")
+                if progress.prediction_percent or progress.parameter_percent
                 else {}
             )
-            for name, one in verdict.by_rule.items()
+            for name, progress in verdict.by_rule.items()
         },
         "next": following
         and {

@@ -39,7 +39,7 @@ def analysis_document(
     """
     several = len(files) > 1
     read = [*state.elevator_notes, *state.reader_notes, *state.mark_notes] if state else []
-    heard = {one.flight: one for one in state.flights} if state else {}
+    heard = {log.flight: log for log in state.flights} if state else {}
     logs = [_log(heard.get(flight), file) for flight, file in enumerate(files)]
 
     def of_log(flight: int) -> dict[str, Any]:
@@ -57,7 +57,7 @@ def analysis_document(
             for flight, several_problems in sorted(left_out.items())
             for problem in several_problems
         ]
-        + [one.entry for one in (state.failed if state else ())],
+        + [failure.entry for failure in (state.failed if state else ())],
         "log": {**logs[0], "notes": read},
         **({"logs": logs, "notes": list(notes)} if several else {}),
         **_OF_NO_CAMPAIGN,
@@ -84,21 +84,21 @@ _OF_NO_CAMPAIGN: Mapping[str, Any] = {
 def _campaign(
     state: CampaignState, aircraft: Aircraft, of_log: Callable[[int], dict[str, Any]]
 ) -> dict[str, Any]:
-    found = coefficients_of(state, aircraft.reference)
+    coefficients = coefficients_of(state, aircraft.reference)
     return {
         "maneuvers": [{**_maneuver(m), **of_log(m.maneuver.flight)} for m in state.maneuvers],
         "flight_test": concluded(state.flight_test),
         "model": _model(state.model),
-        "coefficients": {name: picked(one, "value std") for name, one in found.items()},
+        "coefficients": {name: picked(c, "value std") for name, c in coefficients.items()},
         "flying_qualities": qualities_document(qualities_of(state, aircraft.reference)),
-        "instruments": [instrument_document(found) for found in state.instruments],
+        "instruments": [instrument_document(finding) for finding in state.instruments],
         "estimate_from": list(state.estimate_from),
         "activity": [
             {
-                "start_boot_s": plain(one.start_s), "end_boot_s": plain(one.end_s),
-                **picked(one, "reason text boot"), **of_log(one.flight),
+                "start_boot_s": plain(movement.start_s), "end_boot_s": plain(movement.end_s),
+                **picked(movement, "reason text boot"), **of_log(movement.flight),
             }
-            for one in state.activity
+            for movement in state.activity
         ],
         "notices": list(state.notices),
     }  # fmt: skip
@@ -110,7 +110,7 @@ def _log(heard: FlightHeard | None, file: str) -> dict[str, Any]:
         "file": file,
         "duration_s": plain(heard.duration_s) if heard else None,
         "vehicle": picked(heard and heard.vehicle, "system component autopilot firmware"),
-        "channels": {name: picked(one, "source provenance rate_hz largest_gap_s") for name, one in channels},
+        "channels": {name: picked(c, "source provenance rate_hz largest_gap_s") for name, c in channels},
     }
 
 

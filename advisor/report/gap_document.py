@@ -86,7 +86,7 @@ def axis_document(d: Diagnosis) -> dict[str, Any]:
         "causes": [cause_document(c) for c in d.causes],
         "waterfall": [{"effect": e, "after": a} for e, a in d.waterfall],
         "missing_law": d.missing_law and missing_law_document(d.missing_law),
-        "parameters_changed": [changed_document(one) for one in d.derivatives if one.differs],
+        "parameters_changed": [changed_document(c) for c in d.derivatives if c.differs],
         "traces": traces_document(d.traces),
     })  # fmt: skip
     if d.gap.by_channel:
@@ -118,7 +118,7 @@ def _of_the_sides(d: Diagnosis) -> dict[str, Any]:
     return {
         **picked(d, "not_identifiable instruments"),
         "next": steps_to_decide(d),
-        "parameters_compared": [changed_document(one) for one in d.derivatives],
+        "parameters_compared": [changed_document(c) for c in d.derivatives],
         "peaks": d.peaks or None,
     }
 
@@ -136,7 +136,7 @@ def missing_law_document(law: MissingLaw) -> dict[str, Any]:
 
 def structure_of(estimate: Estimate) -> dict[str, Any]:
     """Return the entries of the parameters that the user holds and of the terms that the user adds."""
-    held = {name: one for name, one in with_intervals(estimate).items() if name in estimate.fixed}
+    held = {name: entry for name, entry in with_intervals(estimate).items() if name in estimate.fixed}
     return held | terms_of(estimate)
 
 
@@ -169,15 +169,15 @@ def weighed_document(d: Diagnosis) -> dict[str, Any]:
     return {
         "how_sure": sure_of(d),
         "probabilities": d.probabilities,
-        "evidence": [_evidence(one) for one in d.evidence],
+        "evidence": [_evidence(e) for e in d.evidence],
         "why_heading": heading(d),
         "why": [{"name": c.name, "nats": c.nats, "text": c.sentence} for c in d.why],
         "answer": d.answer and d.answer.label,
         "decided": is_decided(answers),
         "rival": d.rival or None,
         "decisions": [
-            {"name": f"{one.about} {one.name}", **picked(one, "about statistic limit margin unit holds")}
-            for one in d.decisions
+            {"name": f"{test.about} {test.name}", **picked(test, "about statistic limit margin unit holds")}
+            for test in d.decisions
         ],
     }
 

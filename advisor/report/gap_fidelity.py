@@ -146,8 +146,8 @@ def _maneuvers(gap: Gap) -> Iterator[str]:
 
 
 def _beside(left: list[str], right: list[str]) -> Iterator[str]:
-    for one, other in zip_longest(left, right, fillvalue=""):
-        yield f"{one:{_LEFT}s}{other}".rstrip()
+    for line, other in zip_longest(left, right, fillvalue=""):
+        yield f"{line:{_LEFT}s}{other}".rstrip()
 
 
 def _gap_bar(value: float, largest: float) -> str:

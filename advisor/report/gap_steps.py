@@ -120,7 +120,7 @@ def steps_to_decide(d: Diagnosis) -> list[GapStep]:
 
 def _way_of(d: Diagnosis) -> str:
     """Return the measurement that distinguishes the two likeliest effects; empty if none is known."""
-    shares = ((one.alternative, one.probability) for one in d.evidence)
+    shares = ((e.alternative, e.probability) for e in d.evidence)
     effects = {cause.name: cause.effect for cause in d.causes}
     ours, other = (effects.get(alternative.name, alternative.name) for alternative, _ in together(shares)[:2])
     return way_to_distinguish(ours, other) if {ours, other} <= EFFECTS.keys() else ""

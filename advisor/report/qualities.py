@@ -71,14 +71,14 @@ def qualities_document(flown: FlyingQualities | None) -> dict[str, Any] | None:
         return None
     return {
         **{
-            name: {**picked(one, "value std ci95"), "unit": UNITS[name]}
-            for name, one in flown.qualities.items()
+            name: {**picked(quality, "value std ci95"), "unit": UNITS[name]}
+            for name, quality in flown.qualities.items()
         },
         "correlation": flown.correlation,
         "left_out": dict(flown.left_out),
         "levels": {
-            one.category: {**level_document(one), "phases": CATEGORIES[one.category], "text": one.sentence}
-            for one in flown.levels
+            x.category: {**level_document(x), "phases": CATEGORIES[x.category], "text": x.sentence}
+            for x in flown.levels
         },
         "source": SOURCE,
         "caution": MANNED,
@@ -103,19 +103,19 @@ def quality_lines(flown: FlyingQualities, coefficients: Mapping[str, Coefficient
     """Yield flying qualities and coefficients, one per line, with the 95 % half-width."""
     source = f"Flying qualities at {_speeds(flown)}"
     yield f"{source}:"
-    for name, one in flown.qualities.items():
-        fact = fact_of(NAMES[name], source, one.value, one.std, UNITS[name])
+    for name, quality in flown.qualities.items():
+        fact = fact_of(NAMES[name], source, quality.value, quality.std, UNITS[name])
         yield f"  {fact.name:<17} {fact.sentence}"
     for name, why in flown.left_out.items():
         yield f"  {NAMES[name]:<17} not given: {why}"
     if flown.levels:
         yield f"  {SOURCE}:"
-        yield from (f"    {one.sentence} ({CATEGORIES[one.category]})" for one in flown.levels)
+        yield from (f"    {level.sentence} ({CATEGORIES[level.category]})" for level in flown.levels)
         yield f"  {MANNED}"
     if coefficients:
         source = f"Coefficients {CONVENTION}"
         yield f"{source}:"
-        each = (fact_of(name, source, one.value, one.std) for name, one in coefficients.items())
+        each = (fact_of(name, source, c.value, c.std) for name, c in coefficients.items())
         yield f"  {'  '.join(f'{fact.name} {fact.cell}' for fact in each)}"
     yield f"note: {flown.air.sentence[0].upper()}{flown.air.sentence[1:]}."
 
@@ -143,8 +143,8 @@ OPTIONAL = frozenset({"Y_p", "Y_r", "Y_delta_a"})
 def mode_facts(state: LateralState) -> list[Fact]:
     """Return frequency, damping, time constant and pole of the modes in the joint estimate."""
     modes, source = state.model.modes if state.model else None, joint_source(state)
-    told = ((one, named) for name, named in MODES.items() if (one := getattr(modes, name, None)) is not None)
-    return [fact_of(name, source, one.value, one.std, unit) for one, (name, unit) in told]
+    rows = ((m, named) for name, named in MODES.items() if (m := getattr(modes, name, None)) is not None)
+    return [fact_of(name, source, m.value, m.std, unit) for m, (name, unit) in rows]
 
 
 def levels_of(state: LateralState) -> tuple[LateralLevels, ...]:
@@ -157,12 +157,12 @@ def levels_document(levels: tuple[LateralLevels, ...]) -> dict[str, Any] | None:
     if not levels:
         return None
     by_class: dict[str, dict[str, Any]] = {group: {} for group in GROUPS}
-    for one in levels:
-        by_class[one.group][one.category] = {
-            **level_document(one.governing),
-            "phases": CATEGORIES[one.category],
-            "by_mode": {mode: level_document(level) for mode, level in one.by_mode.items()},
-            "text": one.governing.sentence,
+    for rated in levels:
+        by_class[rated.group][rated.category] = {
+            **level_document(rated.governing),
+            "phases": CATEGORIES[rated.category],
+            "by_mode": {mode: level_document(level) for mode, level in rated.by_mode.items()},
+            "text": rated.governing.sentence,
         }
     return {"by_class": by_class, "source": LATERAL_SOURCE, "caution": MANNED}
 
@@ -177,22 +177,22 @@ def tests_of(state: LateralState, aircraft: Aircraft) -> tuple[LateralTest, ...]
     stated = {name: aircraft.model[name] for name in SIDE_PARAMETERS if name in aircraft.model}
     if model is None or not {*stated, *OPTIONAL} >= set(SIDE_PARAMETERS):
         return ()
-    joined = [one for one in state.maneuvers if one.maneuver.number in state.estimate_from]
-    rolled = [one for one in joined if one.maneuver.span.kind.startswith(("aileron", "bank"))]
+    joined = [m for m in state.maneuvers if m.maneuver.number in state.estimate_from]
+    rolled = [m for m in joined if m.maneuver.span.kind.startswith(("aileron", "bank"))]
     tests = lateral_qualification(
         model.theta,
         np.array([stated.get(name, 0.0) for name in SIDE_PARAMETERS]),
-        trim_of([one.maneuver for one in joined], model.airspeed_m_s or np.nan),
+        trim_of([m.maneuver for m in joined], model.airspeed_m_s or np.nan),
         *_step(rolled),
     )
     if rolled and "L_delta_a" not in model.not_identifiable:
         return tests
-    return tuple(one for one in tests if one.entry != "2.d.2")
+    return tuple(test for test in tests if test.entry != "2.d.2")
 
 
 def tests_document(tests: tuple[LateralTest, ...]) -> list[dict[str, Any]]:
     """Return the list ``qualification`` of the block ``lateral``."""
-    return [picked(one, "entry name unit flown simulated limit holds") for one in tests]
+    return [picked(test, "entry name unit flown simulated limit holds") for test in tests]
 
 
 def trim_of(joined: Sequence[Maneuver], airspeed_m_s: float) -> Trim:
@@ -202,7 +202,7 @@ def trim_of(joined: Sequence[Maneuver], airspeed_m_s: float) -> Trim:
 
 
 def _mean(joined: Sequence[Maneuver], name: str, otherwise: float) -> float:
-    series = [one.channels[name].y for one in joined if name in one.channels]
+    series = [m.channels[name].y for m in joined if name in m.channels]
     return float(np.mean([np.mean(y) for y in series])) if series else otherwise
 
 
@@ -210,7 +210,7 @@ def _step(rolled: list[JudgedManeuver]) -> tuple[float, float]:
     """Return the size, rad, and the duration, s, of the largest aileron step that was flown."""
     steps = [
         (abs(level), after - onset)
-        for one in rolled
-        for (onset, level), (after, _) in pairwise(one.maneuver.span.steps)
+        for m in rolled
+        for (onset, level), (after, _) in pairwise(m.maneuver.span.steps)
     ]
     return max(steps, default=(0.0, 1.0))

@@ -38,8 +38,8 @@ def joint_table(
     if state.model is None:
         return None
     if isinstance(state, CampaignState):
-        return joint_of(name, reference_speed(state), [of_all(one, state, prior) for one in PARAMETERS])
-    rows = [of_all(one, state, prior) for one in SIDE_PARAMETERS]
+        return joint_of(name, reference_speed(state), [of_all(p, state, prior) for p in PARAMETERS])
+    rows = [of_all(p, state, prior) for p in SIDE_PARAMETERS]
     return joint_of(name, reference_speed(state), rows, " L and N include the products of inertia.")
 
 
@@ -67,10 +67,10 @@ def joint_of(name: str, at: str, rows: Sequence[EstimatedParameter], more: str =
 
 def structure_table(estimate: Estimate, name: str) -> Iterator[Table]:
     """Yield the table of the parameters that the user holds and of the terms that the user adds, if any."""
-    rows = [(symbol(one), f"{signed(estimate.value(one), 3)}, held", "–", "SI") for one in estimate.fixed]
+    rows = [(symbol(p), f"{signed(estimate.value(p), 3)}, held", "–", "SI") for p in estimate.fixed]
     rows += [
-        (one.name, with_half(one.value, NORMAL_95 * one.std), digits(one.gained, 1), "SI")
-        for one in estimate.terms
+        (term.name, with_half(term.value, NORMAL_95 * term.std), digits(term.gained, 1), "SI")
+        for term in estimate.terms
     ]
     if rows:
         yield Table(
@@ -83,8 +83,8 @@ def structure_table(estimate: Estimate, name: str) -> Iterator[Table]:
 def regression_table(estimate: Estimate, name: str) -> Iterator[Table]:
     """Yield the table that compares equation error with output error, if equation error was computed."""
     rows = []
-    for one, regressed in estimate.equation_error.items():
-        here = estimated_parameter(one, "", estimate, {})
+    for parameter, regressed in estimate.equation_error.items():
+        here = estimated_parameter(parameter, "", estimate, {})
         there = with_half(regressed.value, NORMAL_95 * regressed.std)
         rows.append((here.name, there, here.cell, here.unit))
     if rows:
@@ -97,8 +97,8 @@ def channel_table(name: str, caption: str, channels: Mapping[str, ChannelStatus]
     return Table(
         name, caption, ("channel", "source", "provenance", "rate [Hz]", "largest gap [s]"),
         tuple(
-            (channel, one.source, one.provenance, digits(one.rate_hz, 1), digits(one.largest_gap_s, 2))
-            for channel, one in channels.items()
+            (channel, c.source, c.provenance, digits(c.rate_hz, 1), digits(c.largest_gap_s, 2))
+            for channel, c in channels.items()
         ),
         frozenset({3, 4}),
     )  # fmt: skip
@@ -108,5 +108,5 @@ def message_table(name: str, messages: Sequence[Mapping[str, Any]]) -> Table:
     """Return the table of the messages of ``advisor.doctor/1``: rates, jitter and largest gap."""
     decimals = {"rate_hz": 1, "lowest_hz": 1, "renewed_hz": 1, "jitter_ms": 1, "largest_gap_s": 3}
     head = ("message", "rate [Hz]", "lowest [Hz]", "new [Hz]", "jitter [ms]", "gap [s]")
-    rows = tuple((one["name"], *(digits(one[k], n) for k, n in decimals.items())) for one in messages)
+    rows = tuple((m["name"], *(digits(m[k], n) for k, n in decimals.items())) for m in messages)
     return Table(name, "Rates of the messages; gap: the largest.", head, rows, frozenset(range(1, 6)))

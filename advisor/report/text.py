@@ -122,7 +122,7 @@ class AnalysisText:
     def _regressed(self, model: Estimate) -> RenderResult:
         """Yield the comparison of equation error with output error, on request."""
         if self.every_movement:
-            yield from (one.on_console(one.caption) for one in regression_table(model, "equation-error"))
+            yield from (t.on_console(t.caption) for t in regression_table(model, "equation-error"))
 
     def _movements(
         self, maneuvers: Sequence[JudgedManeuver], activity: Sequence[Activity], room: int = ROOM

@@ -22,8 +22,8 @@ def agreeing(diagnosis: Diagnosis, logged: Estimate | NoEstimate) -> Diagnosis:
     """
     if isinstance(logged, NoEstimate):
         return diagnosis
-    told = zip(logged.names, logged.theta.tolist(), logged.std.tolist(), strict=True)
-    others = {name: Value(x, std) for name, x, std in told if name not in logged.not_identifiable}
+    estimated = zip(logged.names, logged.theta.tolist(), logged.std.tolist(), strict=True)
+    others = {name: Value(x, std) for name, x, std in estimated if name not in logged.not_identifiable}
     shared = [derivative.name for derivative in diagnosis.derivatives if derivative.name in others]
     model = {**diagnosis.model, **{name: diagnosis.model[name].agreeing(others[name]) for name in shared}}
     wider = [PARAMETERS[name].symbol for name in shared if model[name] != diagnosis.model[name]]

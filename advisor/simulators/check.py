@@ -183,11 +183,11 @@ def _identified(
     """Return the results with derivatives, lag, dead time and natural motion added."""
     elevator = _three_two_one_one(t)
     size = _SMALL
-    one = simulator.replay(condition, Inputs(t, size * elevator))
-    if abs(float(np.ptp(one.q)) / (size * float(np.ptp(flown.q))) - 1.0) > _PROPORTIONAL:
-        one, size = flown, 1.0
-    other = simulator.replay(condition, Inputs(t, -size * elevator))
-    pitch = identified_pitch(one, other, t, size * elevator)
+    up = simulator.replay(condition, Inputs(t, size * elevator))
+    if abs(float(np.ptp(up.q)) / (size * float(np.ptp(flown.q))) - 1.0) > _PROPORTIONAL:
+        up, size = flown, 1.0
+    down = simulator.replay(condition, Inputs(t, -size * elevator))
+    pitch = identified_pitch(up, down, t, size * elevator)
     values = {name: value.value for name, value in pitch.derivatives.items()}
     numbers = np.array([values[name] for name in DERIVATIVES])
     omega = natural_frequency(numbers)

@@ -110,8 +110,8 @@ def compare(
     )
     if isinstance(simulator, LinearSimulator):
         surrogate = Surrogate(simulator.derivatives, simulator.reference_m_s or flights.reference_m_s)
-        known = simulator.as_file if isinstance(simulator, IdentifiedSimulator) else aircraft
-        as_file = replace(known, simulator=None)
+        basis = simulator.as_file if isinstance(simulator, IdentifiedSimulator) else aircraft
+        as_file = replace(basis, simulator=None)
         as_flown = _linear(flying)
     else:
         surrogate, as_flown, replays = _surrogate_and_rest(flying, aircraft)
@@ -156,7 +156,7 @@ def _measured(
     as_flown: Mapping[int, AsGiven],
 ) -> Diagnosis:
     """Return the diagnosis with the simulator's own gap, before and after the corrections."""
-    diagnosis, gap = examined.diagnosis, flown.told
+    diagnosis, gap = examined.diagnosis, flown.gap
     assert gap is not None
     if unseen is not None and flown.after is not None and not gap.on_paper:
         diagnosis = resaid(diagnosis, shrink_on(examined, unseen, flown.before, flown.after), as_file)
@@ -174,9 +174,9 @@ def _as_logged(traces: Sequence[Trace], as_flown: Mapping[int, AsGiven]) -> tupl
     """Return the traces of the logged flight, with those of the simulator in place of its surrogate."""
     logged = []
     for trace in traces:
-        one = as_flown[trace.number]
-        t = np.arange(one.beyond.shape[1]) * one.flight.h
-        by = np.interp(trace.t, t, one.beyond[OUTPUTS.index(trace.channel)])
+        as_given = as_flown[trace.number]
+        t = np.arange(as_given.beyond.shape[1]) * as_given.flight.h
+        by = np.interp(trace.t, t, as_given.beyond[OUTPUTS.index(trace.channel)])
         logged.append(
             replace(trace, measured=trace.measured + by, before=trace.before + by, after=trace.after + by)
         )
@@ -198,10 +198,10 @@ def _surrogate_and_rest(
     """Return the surrogate, every manoeuvre as the simulator flew it, and the replays."""
     flights = flying.flights
     variants = variants_for(flights)
-    known = with_known(base_entries(aircraft), aircraft.effects, flights, variants)
-    command = np.zeros_like(known)
+    values = with_known(base_entries(aircraft), aircraft.effects, flights, variants)
+    command = np.zeros_like(values)
     entries = [INDEX[name] for name in COMMAND]
-    command[:, entries] = known[:, entries]
+    command[:, entries] = values[:, entries]
     replays = flying.replays(command, held=False)
     refuse_unmoved(flying.simulator.description, replays, flights)
     flown = flying.as_flown(replays)

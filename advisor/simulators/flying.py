@@ -132,7 +132,7 @@ def beyond(flying: Flying, replays: Sequence[Replay], p: FloatArray, held: bool 
 
 
 def added(
-    flown: Sequence[PreparedManeuver], found: FloatArray, as_given: FloatArray
+    flown: Sequence[PreparedManeuver], changed: FloatArray, as_given: FloatArray
 ) -> tuple[Increments, ...]:
     """Return the increments by which effects change the simulator, for every manoeuvre.
 
@@ -140,15 +140,15 @@ def added(
     ----------
     flown
         Manoeuvres as the simulator flew them without the effects.
-    found
+    changed
         Shape (manoeuvres, entries): inputs of the surrogate with the effects.
     as_given
         Shape (6,): derivatives of the surrogate without the effects.
     """
-    plain = np.zeros(found.shape[1])
+    plain = np.zeros(changed.shape[1])
     plain[: len(as_given)] = as_given
     increments = []
-    for there, with_effects in zip(flown, found, strict=True):
+    for there, with_effects in zip(flown, changed, strict=True):
         numbers = np.stack([carried(trimmed_at(p, there)) for p in (with_effects, plain)])
         height_m = float(there.slow[HEIGHT, 0])
         increments.append(SimulatorIncrements(numbers, there.alpha_trim, there.reference_m_s, height_m))

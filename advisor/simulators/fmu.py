@@ -92,7 +92,7 @@ class FmuSimulator:
         self._angle = angle
         self._step_s = variables.step_s or self._fmu.default_step_s or _STEP_S
         self.takes_increments = variables.force_increment is not None
-        conditions = {name for name in CONDITIONS if any(one.startswith(name) for one in self._trim)}
+        conditions = {name for name in CONDITIONS if any(key.startswith(name) for key in self._trim)}
         self.takes = frozenset({*self._inputs} & {*CONTROLS} | conditions)
 
     def replay(self, condition: Condition, inputs: Inputs, increments: Increments | None = None) -> Replay:
@@ -207,8 +207,8 @@ class FmuSimulator:
         """Return outputs in the order of ``_OUTPUTS``; unmapped speed and height are the condition's."""
         values = dict(zip(self._outputs, self._fmu.read(self._outputs.values()), strict=True))
         kept = {"airspeed": condition.airspeed_m_s, "height": condition.height_m}
-        told = {name: self._factor[name] * value for name, value in values.items()}
-        return [told.get(name, kept.get(name, np.nan)) for name in _OUTPUTS if name in {*_MOTION, *told}]
+        motion = {name: self._factor[name] * value for name, value in values.items()}
+        return [motion.get(name, kept.get(name, np.nan)) for name in _OUTPUTS if name in {*_MOTION, *motion}]
 
     def _check_speed(self, condition: Condition, row: list[float]) -> None:
         began = row[_OUTPUTS.index("airspeed")]

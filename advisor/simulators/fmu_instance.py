@@ -50,7 +50,7 @@ class Fmu:
                 "Export it on this platform, or compile its sources.",
             )
         self._is_fmi3 = version.startswith("3.")
-        self._variables = {one.name: one for one in self._description.modelVariables}
+        self._variables = {variable.name: variable for variable in self._description.modelVariables}
         self._instance: Any = None
         self._solver: ModelExchange | None = None
 
@@ -129,8 +129,8 @@ class Fmu:
                 if self._is_fmi3 and ended[1]:
                     raise EndedError
         except EndedError as error:
-            told = f"ends its simulation at {t:.2f} s"
-            raise self._unusable(told, "Let it run as long as a manoeuvre.") from error
+            ending = f"ends its simulation at {t:.2f} s"
+            raise self._unusable(ending, "Let it run as long as a manoeuvre.") from error
         except Exception as error:
             raise self._refused(f"at {t:.2f} s", error) from error
 

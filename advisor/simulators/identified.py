@@ -49,9 +49,9 @@ class IdentifiedPitch:
     dead_time_s: Value
 
 
-def odd_part(one: Replay, other: Replay, name: str, t: FloatArray) -> FloatArray:
+def odd_part(up: Replay, down: Replay, name: str, t: FloatArray) -> FloatArray:
     """Return half the difference of an output of two flights at the times ``t``, shape (n,)."""
-    rows = [np.interp(t, replay.t, getattr(replay, name)) for replay in (one, other)]
+    rows = [np.interp(t, replay.t, getattr(replay, name)) for replay in (up, down)]
     half: FloatArray = 0.5 * (rows[0] - rows[1])
     return half
 
@@ -118,17 +118,17 @@ def _colour(residual: FloatArray) -> float:
 class _PitchFit:
     """Odd part of two flights, and its residual from a linear model."""
 
-    def __init__(self, one: Replay, other: Replay, t: FloatArray, elevator: FloatArray) -> None:
-        self._h, self._speed = float(t[1] - t[0]), float(one.airspeed_m_s[0])
+    def __init__(self, up: Replay, down: Replay, t: FloatArray, elevator: FloatArray) -> None:
+        self._h, self._speed = float(t[1] - t[0]), float(up.airspeed_m_s[0])
         self._elevator = elevator
         self._ends: FloatArray = np.arange(len(t) + 1, dtype=np.float64) * self._h
-        own: FloatArray = one.t[one.t <= self._ends[-1]]
+        own: FloatArray = up.t[up.t <= self._ends[-1]]
         self._own = own
-        self._alpha, self._q = (odd_part(one, other, name, own) for name in ("alpha", "q"))
-        faster = odd_part(one, other, "airspeed_m_s", own)
-        along = [np.interp(own, flown.t, _lift_axis_force(flown)) for flown in (one, other)]
+        self._alpha, self._q = (odd_part(up, down, name, own) for name in ("alpha", "q"))
+        faster = odd_part(up, down, "airspeed_m_s", own)
+        along = [np.interp(own, flown.t, _lift_axis_force(flown)) for flown in (up, down)]
         self._normal = 0.5 * (along[0] - along[1]) / self._speed
-        self._faster = odd_part(one, other, "airspeed_m_s", t) / self._speed
+        self._faster = odd_part(up, down, "airspeed_m_s", t) / self._speed
         self._moves_speed = bool(np.ptp(self._faster) > 0.0)
         self._faster_own = faster / self._speed
         edges = self._ends[1:-1][np.diff(elevator) != 0.0]

@@ -65,7 +65,7 @@ def in_simulator(
     kept = tuple(range(len(flights))) if unseen is None else unseen.kept
     derivatives = np.array([surrogate.derivatives[name] for name in DERIVATIVES])
     given = SearchPoint(derivatives, whole.findings.last.fitted.point.own)
-    plain = (whole if unseen is None else unseen.found).findings.models[0].fitted
+    plain = (whole if unseen is None else unseen.examined).findings.models[0].fitted
     before = predicted(problem, given, plain, floor, kept, unknown_offset(whole.diagnosis, None))
     was = whole_gap(before.mean_square, floor)
     original = with_series(problem, [as_flown[f.number].beyond for f in flights], 1.0)
@@ -73,12 +73,12 @@ def in_simulator(
         flying.simulator.description, tuple(flights[i].number for i in kept), was, was, 0.0, (),
         qualified(original, before, None, kept),
     )  # fmt: skip
-    as_it_was = Flown(before, None, was, was, told=unchanged)
-    if unseen is None or not changes_something(unseen.found.diagnosis):
+    as_it_was = Flown(before, None, was, was, gap=unchanged)
+    if unseen is None or not changes_something(unseen.examined.diagnosis):
         return as_it_was
     part = _carried(as_changed(unseen, whole), problem, surrogate, flying)
     unchanged = replace(unchanged, on_paper=part.on_paper)
-    as_it_was = replace(as_it_was, on_paper=part.on_paper, told=unchanged)
+    as_it_was = replace(as_it_was, on_paper=part.on_paper, gap=unchanged)
     if not part.point.effects and np.array_equal(part.point.derivatives, derivatives):
         return as_it_was
     try:
@@ -86,22 +86,22 @@ def in_simulator(
     except UnusableInputError as error:
         # The diagnosis stands, even if the simulator does not fly with the effects.
         refused = replace(unchanged, after=None, percent=None, refused=str(error.problem))
-        return replace(as_it_was, told=refused)
-    offset = unknown_offset(whole.diagnosis, unseen.found.diagnosis)
-    own = unseen.found.findings.last.fitted
+        return replace(as_it_was, gap=refused)
+    offset = unknown_offset(whole.diagnosis, unseen.examined.diagnosis)
+    own = unseen.examined.findings.last.fitted
     after = predicted(now, part.point, own, floor, kept, offset)
     here = whole_gap(after.mean_square, floor)
     if here > was:
         # Nothing is added that raises the gap.
         return replace(as_it_was, gap_after=here)
-    found = replace(
+    improved = replace(
         unchanged,
         after=here,
         percent=percent_of(was, here),
         after_air_and_instruments=_without_air(whole, after),
         qualification=qualified(original, before, after, kept),
     )
-    return Flown(before, after, was, here, part.on_paper, found)
+    return Flown(before, after, was, here, part.on_paper, improved)
 
 
 def where_it_acts(
@@ -144,17 +144,17 @@ def _flown_with(
     flights = problem.flights.flights
     given = [as_flown[f.number] for f in flights]
     still = replace(part.point, own=np.zeros_like(part.point.own))
-    found = problem.driving(still)[list(kept)]
+    changed = problem.driving(still)[list(kept)]
     began = [at_reference(given[i].flight, problem.flights.reference_m_s) for i in kept]
     as_it_is = np.array([surrogate.derivatives[name] for name in DERIVATIVES])
     changes = any(v.block in EQUATIONS for v in part.point.effects) or np.any(
         part.point.derivatives != as_it_is
     )
-    increments = added(began, found, as_it_is) if changes and flying.simulator.takes_increments else None
+    increments = added(began, changed, as_it_is) if changes and flying.simulator.takes_increments else None
     measured = replace(flying, flights=replace(problem.flights, flights=tuple(flights[i] for i in kept)))
-    replays = measured.replays(without_servo(found, surrogate), problem.held, increments)
-    grids = dict(zip(kept, beyond(measured, replays, found, problem.held), strict=True))
-    differs = [grids.get(i, one.beyond) - one.beyond for i, one in enumerate(given)]
+    replays = measured.replays(without_servo(changed, surrogate), problem.held, increments)
+    grids = dict(zip(kept, beyond(measured, replays, changed, problem.held), strict=True))
+    differs = [grids.get(i, was.beyond) - was.beyond for i, was in enumerate(given)]
     return with_series(problem, differs, -1.0)
 
 

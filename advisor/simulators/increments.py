@@ -46,8 +46,8 @@ class SimulatorIncrements:
             state.alpha_dot, state.q, state.elevator, self.alpha_trim,
         ])  # fmt: skip
         lift, throttle = np.array([lagging, state.alpha]), np.array([engine, state.throttle])
-        found, plain = right_sides(LAYOUT, self.numbers, motion, self.reference_m_s, lift, throttle)
-        return float(found[0] - plain[0]), float(found[1] - plain[1])
+        changed, plain = right_sides(LAYOUT, self.numbers, motion, self.reference_m_s, lift, throttle)
+        return float(changed[0] - plain[0]), float(changed[1] - plain[1])
 
     def _remembered(self, state: State) -> tuple[float, float]:
         """Return the lift's lagging angle and the engine's lagging throttle at the state's time."""

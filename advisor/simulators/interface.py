@@ -46,14 +46,14 @@ class InterfaceFault:
     """Wrong sign or unit of one quantity of a simulator."""
 
     quantity: str
-    found: str
+    observed: str
     """Sign or unit of the quantity, in words."""
     fix: str
 
     def refuse(self, description: str) -> UnusableInputError:
         """Return the error message that refuses a simulator with this fault."""
         return UnusableInputError(
-            "simulator_interface", f"{description} gives {self.quantity} {self.found}.", self.fix
+            "simulator_interface", f"{description} gives {self.quantity} {self.observed}.", self.fix
         )
 
 
@@ -63,18 +63,18 @@ def interface_fault(replay: Replay) -> InterfaceFault | None:
     if _is(a_z, GRAVITY_M_S2):
         return _sign("a_z", f"as {a_z:+.2f} m/s² in steady flight, where body z down gives -9.81")
     if _is(a_z, 1.0) or _is(a_z, -1.0):
-        told = f"as {a_z:+.2f} in steady flight, which is a number of g, where -9.81 m/s² is expected"
-        return InterfaceFault("a_z", told, "Multiply by 9.80665 (scale: {a_z: ...}), negative in flight.")
+        observed = f"as {a_z:+.2f} in steady flight, which is a number of g, where -9.81 m/s² is expected"
+        return InterfaceFault("a_z", observed, "Multiply by 9.80665 (scale: {a_z: ...}), negative in flight.")
     if abs(a_z) < 0.1 * GRAVITY_M_S2:
-        told = f"as {a_z:+.2f} m/s² in steady flight, an acceleration without the weight"
-        return InterfaceFault("a_z", told, "Give the specific force, which an accelerometer reads.")
+        observed = f"as {a_z:+.2f} m/s² in steady flight, an acceleration without the weight"
+        return InterfaceFault("a_z", observed, "Give the specific force, which an accelerometer reads.")
     large = [name for name in _NAMES if np.max(np.abs(getattr(replay, name))) > _SMALL_RAD]
     if large:
         # A large angle may also be that of a simulator that departs.
-        told = " and ".join(_NAMES[name] for name in large)
+        observed = " and ".join(_NAMES[name] for name in large)
         in_degrees = any(_agrees(_in_radians(replay, names)) for names in (large, [*large, "q"]))
         mend = "Give angles in rad, and check q, which is in rad/s."
-        return InterfaceFault(told, "in degrees", mend) if in_degrees else None
+        return InterfaceFault(observed, "in degrees", mend) if in_degrees else None
     turned = integrated(replay.t, replay.q)
     if np.ptp(turned) < _MOVES_RAD:
         return None
@@ -86,7 +86,7 @@ def interface_fault(replay: Replay) -> InterfaceFault | None:
 
 def _mended(replay: Replay, fault: InterfaceFault) -> Replay:
     """Return the replay with a wrong sign or unit of α, q or θ corrected."""
-    factor = -1.0 if "reversed" in fault.found else 1.0 / _PER_RAD
+    factor = -1.0 if "reversed" in fault.observed else 1.0 / _PER_RAD
     changed: dict[str, Any] = {
         name: factor * getattr(replay, name)
         for name in ("alpha", "q", "theta")
@@ -172,14 +172,14 @@ def control_fault(control: str, turns: float, answer: float) -> InterfaceFault |
         Size of the response as in ``_LEAST``.
     """
     if answer < _LEAST[control]:
-        told = f"{_LEAST[control] / max(answer, 1e-6):.0f} times less effect than the weakest of an aircraft"
+        size = f"{_LEAST[control] / max(answer, 1e-6):.0f} times less effect than the weakest of an aircraft"
         mend = "It expects degrees: convert the deflection, which is sent in rad, into degrees."
-        return InterfaceFault(f"the {control}", told, mend)
+        return InterfaceFault(f"the {control}", size, mend)
     if control == "aileron" and answer > _LEAST[control] * _PER_RAD:
-        told = f"{answer / _LEAST[control]:.0f} times the effect of the weakest of an aircraft"
+        size = f"{answer / _LEAST[control]:.0f} times the effect of the weakest of an aircraft"
         return InterfaceFault(
             "the aileron",
-            told,
+            size,
             "It treats the deflection as degrees, but it is sent in rad: use it without conversion.",
         )
     if turns <= 0.0:
@@ -243,6 +243,6 @@ def _is(factor: float, unit: float) -> bool:
     return factor * unit > 0.0 and abs(log(factor / unit)) < _NEAR
 
 
-def _sign(quantity: str, found: str) -> InterfaceFault:
+def _sign(quantity: str, observed: str) -> InterfaceFault:
     mend = f"Reverse {quantity} in the simulator's output (scale: -1), or in its wrapper."
-    return InterfaceFault(quantity, found, mend)
+    return InterfaceFault(quantity, observed, mend)

@@ -193,8 +193,8 @@ class JsbsimFlight:
     def accelerations(self) -> FloatArray:
         """Return u̇, v̇, ẇ in m/s² and ṗ, q̇, ṙ in rad/s², shape (6,)."""
         fdm = self.fdm
-        linear = [FOOT_M * fdm[f"accelerations/{one}dot-ft_sec2"] for one in "uvw"]
-        return np.array(linear + [fdm[f"accelerations/{one}dot-rad_sec2"] for one in "pqr"])
+        linear = [FOOT_M * fdm[f"accelerations/{axis}dot-ft_sec2"] for axis in "uvw"]
+        return np.array(linear + [fdm[f"accelerations/{axis}dot-rad_sec2"] for axis in "pqr"])
 
     @property
     def mass_slug(self) -> float:

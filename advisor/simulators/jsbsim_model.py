@@ -86,13 +86,13 @@ def find_model(name: str) -> Path:
             fix = "Give the path of the model's XML."
             raise UnusableInputError("no_such_file", f"There is no file {name}.", fix)
         return path.resolve()
-    found = importlib.util.find_spec("jsbsim")
-    if found is None or found.origin is None:
+    package = importlib.util.find_spec("jsbsim")
+    if package is None or package.origin is None:
         raise ConfigurationError("jsbsim is not installed: pip install 'inflight-advisor[jsbsim]'.")
-    shipped = Path(found.origin).parent / "aircraft"
+    shipped = Path(package.origin).parent / "aircraft"
     path = shipped / name / f"{name}.xml"
     if not name or not path.is_file():
-        names = sorted(one.name for one in shipped.iterdir() if (one / f"{one.name}.xml").is_file())
+        names = sorted(path.name for path in shipped.iterdir() if (path / f"{path.name}.xml").is_file())
         near = get_close_matches(name, names, 1)
         hint = f"did you mean {near[0]}" if near else "c172p and 737 are two of its models"
         raise ConfigurationError(f"jsbsim: JSBSim has no model {name!r}; {hint}, or a path to model.xml.")
@@ -171,7 +171,7 @@ def _files(tree: "ET.ElementTree[ET.Element]", folders: Sequence[Path]) -> list[
     """Return the root elements of a model's file and of its included systems."""
     root = tree.getroot()
     assert root is not None
-    found = [root]
+    roots = [root]
     for element in root.iter():
         name = element.get("file", "").removesuffix(".xml")
         file = (
@@ -179,8 +179,8 @@ def _files(tree: "ET.ElementTree[ET.Element]", folders: Sequence[Path]) -> list[
         )
         if file is not None and element.tag in ("system", "autopilot", "flight_control", "aerodynamics"):
             with suppress(ET.ParseError):
-                found.append(ET.parse(file).getroot())
-    return found
+                roots.append(ET.parse(file).getroot())
+    return roots
 
 
 def _section(root: ET.Element, tag: str, folder: Path | None = None) -> ET.Element:

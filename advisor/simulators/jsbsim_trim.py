@@ -82,8 +82,8 @@ def _next_throttle(tried: list[_Tried]) -> float | None:
     last = tried[-1]
     if abs(last.excess) < _BALANCED_M_S2 or len(tried) >= _THROTTLES:
         return None
-    slow = [(one.state.throttle, one.excess) for one in tried if one.excess < 0.0]
-    fast = [(one.state.throttle, one.excess) for one in tried if one.excess >= 0.0]
+    slow = [(trial.state.throttle, trial.excess) for trial in tried if trial.excess < 0.0]
+    fast = [(trial.state.throttle, trial.excess) for trial in tried if trial.excess >= 0.0]
     if not slow or not fast:
         end, now = 1.0 if slow else 0.0, last.state.throttle
         if now == end:

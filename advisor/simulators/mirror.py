@@ -128,7 +128,7 @@ class Mirror:
         by_number = {m.number: m for m in self.maneuvers}
         flights = self.flying.flights
         white = dict(zip(flights.channels, flights.white, strict=True))
-        found = []
+        as_flights = []
         for flight, replay in zip(flights.flights, replays, strict=True):
             maneuver = by_number[flight.number]
             rng = np.random.default_rng(flight.number)
@@ -142,8 +142,8 @@ class Mirror:
                 noise = white.get(name, 0.0) * rng.standard_normal(len(read))
                 # A simulator's own angle of attack is exact: its lateness is no habit of an autopilot.
                 channels[name] = Channel(name, logged.t, read + noise, "simulator", "vane")
-            found.append(replace(maneuver, channels=channels))
-        return found
+            as_flights.append(replace(maneuver, channels=channels))
+        return as_flights
 
 
 def said_of_the_simulator(whole: Examined, diagnosis: Diagnosis) -> Diagnosis:
@@ -181,13 +181,13 @@ def _quick_look(as_flights: Sequence[Maneuver], unknown: Aircraft) -> _Sizes | N
     """Return the replays' derivatives and likeliest actuator or instrument effect, or None."""
     problem, plain = fit_baseline(prepare(as_flights, unknown), unknown)
     around = [variant for variant in variants_for(problem.flights) if variant.block in _BLOCKS]
-    found = Screen(problem, plain).likeliest(around)
-    if found is None:
+    likeliest = Screen(problem, plain).likeliest(around)
+    if likeliest is None:
         return None
-    values = found.point.values[-1]
-    sizes = parameters_of(found.variant, values, np.zeros(len(values)))
-    model = dict(zip(DERIVATIVES, map(float, found.point.derivatives), strict=True))
-    return model, {found.name: {name: size.value for name, size in sizes.items()}}
+    values = likeliest.point.values[-1]
+    sizes = parameters_of(likeliest.variant, values, np.zeros(len(values)))
+    model = dict(zip(DERIVATIVES, map(float, likeliest.point.derivatives), strict=True))
+    return model, {likeliest.name: {name: size.value for name, size in sizes.items()}}
 
 
 def _beyond(

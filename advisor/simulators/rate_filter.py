@@ -49,8 +49,8 @@ def cause_of(late: Value, own: Diagnosis) -> Cause:
         Diagnosis of the replays without the lag. The probability of the cause is that of the answer "nothing"
         for these replays.
     """
-    told = own.probabilities
-    likeliness = 0.0 if told is None else told.none + told.parameters
+    probabilities = own.probabilities
+    likeliness = 0.0 if probabilities is None else probabilities.none + probabilities.parameters
     assert EFFECT.imitated_by is not None
     looks, way = EFFECT.imitated_by
     size = {"skew_s": Value(-late.value, late.std)}

@@ -49,9 +49,9 @@ def simulator_of(specification: str, aircraft: Aircraft, read_log: ReadLog) -> S
         return _of_the_file(rest, aircraft)
     others = {point.name: point for point in entry_points(group=GROUP)}
     if kind != "log" and kind not in _OURS and kind not in others:
-        known = ", ".join([_FORMS, *(f"{name}:..." for name in others)])
+        kinds = ", ".join([_FORMS, *(f"{name}:..." for name in others)])
         raise ConfigurationError(
-            f"--simulator {specification}: {kind!r} is no kind of simulator; give {known}."
+            f"--simulator {specification}: {kind!r} is no kind of simulator; give {kinds}."
         )
     if not rest:
         form = next((f for f in _FORMS.split(", ") if f.startswith(kind)), f"{kind}:...")

@@ -50,9 +50,9 @@ def with_static_errors(
     trims
         Trims of simulator and aircraft; empty for a simulator without trim.
     """
-    told = (*_of_the_trims(trims), *_of_the_speed(examined), *_of_numbers_together(diagnosis, examined))
-    sentence = " ".join([*told, diagnosis.sentence, *diagnosis.taken_back])
-    return replace(diagnosis, trims=tuple(trims), static=told, sentence=sentence)
+    errors = (*_of_the_trims(trims), *_of_the_speed(examined), *_of_numbers_together(diagnosis, examined))
+    sentence = " ".join([*errors, diagnosis.sentence, *diagnosis.taken_back])
+    return replace(diagnosis, trims=tuple(trims), static=errors, sentence=sentence)
 
 
 def is_off(trim: TrimDifference) -> bool:
@@ -62,10 +62,10 @@ def is_off(trim: TrimDifference) -> bool:
 
 
 def _of_the_trims(trims: Sequence[TrimDifference]) -> Iterator[str]:
-    for one in filter(is_off, trims):
-        name, because = _TRIMMED[one.quantity]
-        by = one.simulator - one.aircraft
-        size = f"{100.0 * abs(by):.0f} %" if one.quantity == "throttle" else f"{abs(degrees(by)):.1f} deg"
+    for trim in filter(is_off, trims):
+        name, because = _TRIMMED[trim.quantity]
+        by = trim.simulator - trim.aircraft
+        size = f"{100.0 * abs(by):.0f} %" if trim.quantity == "throttle" else f"{abs(degrees(by)):.1f} deg"
         more = "more" if by > 0.0 else "less"
         yield f"The simulator trims at {size} {more} {name} than the aircraft: {because}."
 

@@ -107,9 +107,9 @@ class Stepped:
                 controls["force"], controls["moment"] = increments(state)
             self._environment.step(dt, **self._with_trim(trim, controls))
             rows.append(self._seen(condition))
-        told = {name: value for name, value in trim.items() if name != "alpha"}
+        held = {name: value for name, value in trim.items() if name != "alpha"}
         seen = dict(zip((*_NEEDED, "airspeed_m_s", "height_m", *self._side), np.array(rows).T, strict=True))
-        return Replay(t, **seen, trim=told)
+        return Replay(t, **seen, trim=held)
 
     def linearise(self, condition: Condition) -> None:
         """Return None, because derivatives are identified from replays."""
@@ -196,9 +196,9 @@ class Stepped:
 
         at = np.zeros(len(self._unknowns))
         at[2:] = 0.5
-        found = steady(rates, at)
-        if found is not None:
-            return dict(zip(self._unknowns, found.tolist(), strict=True))
+        solution = steady(rates, at)
+        if solution is not None:
+            return dict(zip(self._unknowns, solution.tolist(), strict=True))
         raise UnusableInputError(
             "simulator_trim",
             f"{self.description} finds no steady flight at {condition.airspeed_m_s:.4g} m/s and "

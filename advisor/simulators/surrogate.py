@@ -55,8 +55,8 @@ class Surrogate:
             lag_s=(lag_s or 0.0) + self.lag_s if self.lag_s else lag_s,
             delay_s=(delay_s or 0.0) + self.delay_s if self.delay_s else delay_s,
         )
-        known = file.airspeed_m_s or file.reference_airspeed_m_s
-        reference = self.reference_m_s if known is None else file.reference_airspeed_m_s or self.reference_m_s
+        given = file.airspeed_m_s or file.reference_airspeed_m_s
+        reference = self.reference_m_s if given is None else file.reference_airspeed_m_s or self.reference_m_s
         return replace(
             file, model=dict(self.derivatives), elevator=elevator, reference_airspeed_m_s=reference
         )

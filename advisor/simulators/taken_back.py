@@ -27,40 +27,40 @@ def without_worse(
     the gap, the diagnosis offers no improved simulator.
     """
     whole = without_raised(whole)
-    found = unseen.found
+    examined = unseen.examined
     every = best = measure(unseen)
     if every.on_paper:
         return whole, every
-    stay = len(found.named)
+    stay = len(examined.named)
     for most in reversed(range(1, stay)):
-        tried = measure(replace(unseen, found=_shortened(found, most)))
+        tried = measure(replace(unseen, examined=_shortened(examined, most)))
         if tried.gap_after < best.gap_after - VISIBLE:
             best, stay = tried, most
     numbers = [flight.number for flight in whole.findings.problem.flights.flights]
     kept = unused([numbers[i] for i in unseen.kept])
     if best.gap_after > best.gap_before + VISIBLE:
         said = taken_back_said(["every correction"], kept, best.gap_after, best.gap_before)
-        told = replace(
+        diagnosis = replace(
             whole.diagnosis, taken_back=(*whole.diagnosis.taken_back, said), shrink=None, corrects=False
         )
-        return replace(whole, diagnosis=told), best
-    taken = [k for k, name in enumerate(whole.named) if name in found.named[stay:]]
+        return replace(whole, diagnosis=diagnosis), best
+    taken = [k for k, name in enumerate(whole.named) if name in examined.named[stay:]]
     if not taken:
         return whole, every
     return _without(whole, taken[0], kept, every.gap_after, best.gap_after), best
 
 
-def _shortened(found: Examined, most: int) -> Examined:
+def _shortened(asked: Examined, most: int) -> Examined:
     """Return a diagnosis with at most the first ``most`` effects, measured with their model."""
-    gone, models = found.named[most:], found.findings.models[: most + 1]
-    left = {effect: sizes for effect, sizes in found.diagnosis.effects.items() if effect not in gone}
+    gone, models = asked.named[most:], asked.findings.models[: most + 1]
+    left = {effect: sizes for effect, sizes in asked.diagnosis.effects.items() if effect not in gone}
     causes = tuple(
-        replace(cause, present=cause.present and cause.effect not in gone) for cause in found.diagnosis.causes
+        replace(cause, present=cause.present and cause.effect not in gone) for cause in asked.diagnosis.causes
     )
     return replace(
-        found,
-        diagnosis=replace(found.diagnosis, effects=left, causes=causes),
-        findings=replace(found.findings, models=(*models[:-1], replace(models[-1], added=None))),
+        asked,
+        diagnosis=replace(asked.diagnosis, effects=left, causes=causes),
+        findings=replace(asked.findings, models=(*models[:-1], replace(models[-1], added=None))),
     )
 
 

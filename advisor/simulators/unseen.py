@@ -40,7 +40,7 @@ class UnseenManeuvers:
 
     kept: tuple[int, ...]
     """Indices of the held-out manoeuvres, in the problem of the whole diagnosis."""
-    found: Examined
+    examined: Examined
     """Diagnosis of all manoeuvres, with derivatives and sizes fitted without the held-out ones."""
 
 
@@ -82,9 +82,9 @@ def sized_without(examined: Examined, apart: Collection[int]) -> Examined:
     problem, diagnosis = examined.findings.problem, examined.diagnosis
     out = [i for i, flight in enumerate(problem.flights.flights) if flight.number in apart]
     models = []
-    for one in examined.findings.models:
-        seen = replace(problem, flights=one.flights or problem.flights)
-        models.append(replace(one, fitted=fit(seen, one.fitted.point, one.fitted.noise, aside=out)))
+    for step in examined.findings.models:
+        seen = replace(problem, flights=step.flights or problem.flights)
+        models.append(replace(step, fitted=fit(seen, step.fitted.point, step.fitted.noise, aside=out)))
     point = models[-1].fitted.point
     slopes = zip(DERIVATIVES, point.derivatives.tolist(), strict=True)
     effects = {effect: dict(sizes) for effect, sizes in diagnosis.effects.items()}
@@ -104,8 +104,8 @@ def as_changed(unseen: UnseenManeuvers, whole: Examined) -> SearchPoint:
     Nuisance parameters belong to the flight, not to the simulator; only the propeller's are exported. Initial
     states, and the side on which play rests, start from the whole diagnosis.
     """
-    found, everything = unseen.found, whole.findings.last.fitted.point
-    point, written = found.findings.last.fitted.point, found.diagnosis.effects
+    examined, everything = unseen.examined, whole.findings.last.fitted.point
+    point, written = examined.findings.last.fitted.point, examined.diagnosis.effects
     with_propeller = not written.get("thrust_moment", {}).keys().isdisjoint(PROPELLER.names)
     kept = [
         k
@@ -153,8 +153,8 @@ def unknown_offset(whole: Diagnosis, model: Diagnosis | None) -> float:
         Diagnosis on which the model is based; None for a simulator as given.
     """
     removed = whole.effects.get(_OFFSET, {}).get("bias_rad", 0.0)
-    known = 0.0 if model is None else model.effects.get(_OFFSET, {}).get("bias_rad", 0.0)
-    return removed - known
+    written = 0.0 if model is None else model.effects.get(_OFFSET, {}).get("bias_rad", 0.0)
+    return removed - written
 
 
 @dataclass(frozen=True)
@@ -169,7 +169,7 @@ class Flown:
     """Gap after the part of the correction that the simulator supports."""
     on_paper: tuple[str, ...] = ()
     """Corrections that the simulator does not support, so that its flights cannot contradict them."""
-    told: InSimulator | None = None
+    gap: InSimulator | None = None
     """Gap for the report; None for the model of an aircraft file."""
 
 
@@ -177,12 +177,12 @@ def by_the_file(whole: Examined, unseen: UnseenManeuvers) -> Flown:
     """Return the file model's residuals before and after the correction from the other manoeuvres."""
     diagnosis, problem, floor = whole.diagnosis, whole.findings.problem, floor_of(whole)
     assert problem.prior_derivatives is not None
-    plain = unseen.found.findings.models[0].fitted
+    plain = unseen.examined.findings.models[0].fitted
     given = SearchPoint(problem.prior_derivatives, whole.findings.last.fitted.point.own)
     before = after = predicted(problem, given, plain, floor, unseen.kept, unknown_offset(diagnosis, None))
-    if changes_something(unseen.found.diagnosis):
-        offset = unknown_offset(diagnosis, unseen.found.diagnosis)
-        own = unseen.found.findings.last.fitted
+    if changes_something(unseen.examined.diagnosis):
+        offset = unknown_offset(diagnosis, unseen.examined.diagnosis)
+        own = unseen.examined.findings.last.fitted
         after = predicted(problem, as_changed(unseen, whole), own, floor, unseen.kept, offset)
     was, now = (whole_gap(held.mean_square, floor) for held in (before, after))
     return Flown(before, after, was, now)

@@ -141,7 +141,7 @@ class ReplayActions(_Actions):
         if playback is None:
             return
         flown = [j.maneuver for axis in state.axes.values() for j in axis.maneuvers]
-        spans = [one.span for one in flown if one.power_on == (state.flight, state.boot)]
+        spans = [maneuver.span for maneuver in flown if maneuver.power_on == (state.flight, state.boot)]
         to_s = next((span.start_s for span in spans if span.start_s <= at_s <= span.end_s), at_s)
         self.seek(playback.position_s + to_s - state.now_s)
         self.say(f"going to {clock(to_s)}")

@@ -64,8 +64,8 @@ def load_settings(path: Path | None = None) -> Settings:
 
 
 def _unknown(data: dict[str, Any]) -> list[str]:
-    known = [f.name for f in fields(Settings)]
-    return [f"unknown key {key!r} (known: {', '.join(known)})" for key in data if key not in known]
+    keys = [f.name for f in fields(Settings)]
+    return [f"unknown key {key!r} (known: {', '.join(keys)})" for key in data if key not in keys]
 
 
 def _wrong(data: dict[str, Any]) -> list[str]:

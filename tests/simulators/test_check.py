@@ -113,7 +113,7 @@ def test_a_simulator_with_play_is_said_to_answer_out_of_proportion():
 def test_an_elevator_that_pitches_up_trailing_edge_down_is_a_fault():
     found = check(LinearSimulator(MODEL | {"M_delta_e": 29.0, "Z_delta_e": 0.15}), LEVEL, Aircraft())
     assert found.fault is not None
-    assert "the wrong direction: it pitches up" in found.fault.found
+    assert "the wrong direction: it pitches up" in found.fault.observed
 
 
 def test_an_elevator_in_degrees_is_a_fault():
@@ -155,7 +155,7 @@ def test_the_aileron_is_flown_and_its_roll_is_known():
 def test_an_aileron_that_rolls_to_the_other_side_is_a_fault():
     found = check(Rolls(sense=-1.0), LEVEL, Aircraft())
     assert found.fault is not None
-    assert "it rolls to the other side" in found.fault.found
+    assert "it rolls to the other side" in found.fault.observed
 
 
 def said(capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch, *arguments: object) -> tuple:

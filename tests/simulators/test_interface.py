@@ -78,7 +78,7 @@ def test_small_angles_in_degrees_are_told_by_the_motion_alone():
 )
 def test_a_control_of_another_sense_or_in_degrees_is_told_without_a_flight(control, turns, answer, words):
     found = control_fault(control, turns, answer)
-    assert (found is None) if words is None else (found is not None and words in found.found)
+    assert (found is None) if words is None else (found is not None and words in found.observed)
 
 
 def test_angles_that_move_together_are_no_wrong_sign():

@@ -58,7 +58,7 @@ def answer(*named: str, in_turn: tuple[float, ...] = ()) -> Examined:
 def taken(gaps: dict[int, float], *named: str, given: float = 659.0):
     """Return the diagnosis without what is worse, where each number of effects has a gap."""
     unseen = UnseenManeuvers((1,), answer(*named))
-    return without_worse(answer(*named), unseen, lambda u: Measured(given, gaps[len(u.found.named)]))
+    return without_worse(answer(*named), unseen, lambda u: Measured(given, gaps[len(u.examined.named)]))
 
 
 def test_effects_after_the_set_with_the_least_gap_leave_the_answer_and_are_named():

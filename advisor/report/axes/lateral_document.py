@@ -34,11 +34,11 @@ def lateral_document(state: LateralState, aircraft: Aircraft) -> dict[str, Any]:
 
 def _maneuver(judged: JudgedManeuver) -> dict[str, Any]:
     estimate = judged.estimate if isinstance(judged.estimate, LateralEstimate) else None
-    told = flown(judged)
-    del told["record_from_boot_s"]
+    entry = flown(judged)
+    del entry["record_from_boot_s"]
     return {
         **picked(judged.maneuver, "number flight boot mode"),
-        **told,
+        **entry,
         **fitted(estimate),
         "estimates": _told(estimate) if estimate else None,
         "modes": _modes(estimate.modes) if estimate else None,
@@ -48,7 +48,7 @@ def _maneuver(judged: JudgedManeuver) -> dict[str, Any]:
 
 def _told(estimate: Estimate) -> dict[str, Any]:
     """Return every identifiable derivative with its 95 % interval."""
-    return {name: one for name, one in with_intervals(estimate).items() if "reason" not in one}
+    return {name: entry for name, entry in with_intervals(estimate).items() if "reason" not in entry}
 
 
 def _model(model: LateralEstimate | None) -> dict[str, Any] | None:
@@ -77,14 +77,14 @@ def side_quality_lines(state: LateralState, aircraft: Aircraft) -> Iterator[str]
     file's model.
     """
     yield from (f"  {fact.name:<18} {fact.sentence}" for fact in mode_facts(state))
-    levels = [one for one in levels_of(state) if one.group == next(iter(GROUPS))]
+    levels = [level for level in levels_of(state) if level.group == next(iter(GROUPS))]
     if levels:
         yield f"  {SOURCE}, Classes {levels[0].group}:"
         yield from (f"    {level.governing.sentence} ({CATEGORIES[level.category]})" for level in levels)
         yield f"  {MANNED}"
-    for one in tests_of(state, aircraft):
-        mark = "✓" if one.holds else "✗"
+    for t in tests_of(state, aircraft):
+        mark = "✓" if t.holds else "✗"
         yield (
-            f"  {mark} {one.name}: flown {one.flown:.3g}, simulator {one.simulated:.3g} {one.unit}".rstrip()
-            + f" (14 CFR Part 60 {one.entry}: ± {one.limit:.2g})"
+            f"  {mark} {t.name}: flown {t.flown:.3g}, simulator {t.simulated:.3g} {t.unit}".rstrip()
+            + f" (14 CFR Part 60 {t.entry}: ± {t.limit:.2g})"
         )

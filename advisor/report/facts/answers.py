@@ -27,11 +27,11 @@ def by_flight_alone(evidence: Sequence[AlternativeEvidence]) -> Answers:
     """
     if not evidence:
         return []
-    before = [sum(c.value for c in one.columns if c.name in _BEFORE_THE_FLIGHT) for one in evidence]
-    logs = [log(max(one.probability, 1e-300)) - nats for one, nats in zip(evidence, before, strict=True)]
+    before = [sum(c.value for c in e.columns if c.name in _BEFORE_THE_FLIGHT) for e in evidence]
+    logs = [log(max(e.probability, 1e-300)) - nats for e, nats in zip(evidence, before, strict=True)]
     weights = [exp(value - max(logs)) for value in logs]
     total = sum(weights)
-    shares = ((one.alternative, w / total) for one, w in zip(evidence, weights, strict=True))
+    shares = ((e.alternative, w / total) for e, w in zip(evidence, weights, strict=True))
     return [(in_words(alternative), p) for alternative, p in together(shares)]
 
 

@@ -108,8 +108,8 @@ def estimated_parameter(
 ) -> EstimatedParameter:
     """Return one parameter of an estimate with the aircraft file's value, if any."""
     quantity, stated = QUANTITIES[name], prior.get(name)
-    known = None if stated is None else stated * quantity.factor
-    named = EstimatedParameter(name=quantity.symbol, source=source, unit=quantity.unit, prior=known)
+    given = None if stated is None else stated * quantity.factor
+    named = EstimatedParameter(name=quantity.symbol, source=source, unit=quantity.unit, prior=given)
     if not isinstance(estimate, Estimate):
         return named
     if name in estimate.not_identifiable:
@@ -172,16 +172,16 @@ def _gain_line(term: TermEstimate) -> str:
     term.
     """
     half = NORMAL_95 * term.std
-    told = f"The term {term.name} has the coefficient {with_half(term.value, half)}"
+    said = f"The term {term.name} has the coefficient {with_half(term.value, half)}"
     if not isfinite(term.gained):
-        return f"{told}; without the term there is no fit to compare with."
+        return f"{said}; without the term there is no fit to compare with."
     gained = f"the term gains {max(term.gained, 0.0):.1f} in log likelihood for one parameter"
     if term.gained < LEAST_GAIN:
         chance = f"chance alone gains {LEAST_GAIN:.1f} in one of 20 flights"
-        return f"{told}. This flight does not show the term: {gained}; {chance}."
+        return f"{said}. This flight does not show the term: {gained}; {chance}."
     if abs(term.value) < half:
-        return f"{told}. The 95 % interval of the coefficient contains zero, although {gained}."
-    return f"{told}, the 95 % interval. The flight supports the term: {gained}."
+        return f"{said}. The 95 % interval of the coefficient contains zero, although {gained}."
+    return f"{said}, the 95 % interval. The flight supports the term: {gained}."
 
 
 def instrument_facts(state: CampaignState) -> list[tuple[Fact, str]]:
@@ -194,11 +194,11 @@ def instrument_facts(state: CampaignState) -> list[tuple[Fact, str]]:
     alpha, source = state.channels.get("alpha"), joint_source(state)
     with_vane = alpha is not None and alpha.provenance in ("vane", "simulated")
     facts = []
-    for one in state.model.instruments:
-        key = one.name if with_vane or one.name != "vane_arm_m" else "no_vane_arm_m"
-        name, unit, factor = _INSTRUMENTS.get(key, (one.name.replace("_", " "), "SI", 1.0))
-        fact = fact_of(name, source, one.value, one.std, unit, factor)
-        stated = "–" if one.stated is None else signed(factor * one.stated, decimals_for(fact.half))
+    for nuisance in state.model.instruments:
+        key = nuisance.name if with_vane or nuisance.name != "vane_arm_m" else "no_vane_arm_m"
+        name, unit, factor = _INSTRUMENTS.get(key, (nuisance.name.replace("_", " "), "SI", 1.0))
+        fact = fact_of(name, source, nuisance.value, nuisance.std, unit, factor)
+        stated = "–" if nuisance.stated is None else signed(factor * nuisance.stated, decimals_for(fact.half))
         facts.append((fact, stated))
     return facts
 

@@ -81,26 +81,26 @@ def law_said(law: MissingLaw) -> str:
     """
     what, unit = LAWS[law.equation]
     depends = f"The missing {what} depends most on the {_OVER[law.variable]}"
-    told = f"{depends}, which explains {100.0 * law.share:.0f} % of the residual"
+    said = f"{depends}, which explains {100.0 * law.share:.0f} % of the residual"
     if not law.nearest:
-        return f"{told}."
+        return f"{said}."
     half = NORMAL_95 * law.coefficient.std
     if abs(law.coefficient.value) < half:
-        return f"{told}; no simple formula fits it."
+        return f"{said}; no simple formula fits it."
     about = f"about {with_half(law.coefficient.value, half)} · {law.nearest} {unit}, next to a line"
-    return f"{told}: {about}; {law.runner_up} comes next."
+    return f"{said}: {about}; {law.runner_up} comes next."
 
 
-def changed(one: ComparedDerivative) -> str:
+def changed(compared: ComparedDerivative) -> str:
     """Return the text of one derivative: the simulator's value, the flight's value with its error, and the
     change.
     """
-    quantity = _QUANTITIES[one.name]
-    given, found, half = (quantity.factor * x for x in (one.given, one.found.value, one.half))
+    quantity = _QUANTITIES[compared.name]
+    given, value, half = (quantity.factor * x for x in (compared.given, compared.found.value, compared.half))
     share = ""
-    if one.percent is not None:
-        share = f" ({'+' if one.percent > 0.0 else ''}{signed(one.percent, 0)} %)"
-    said = f"{quantity.symbol} {signed(given, decimals_for(half))} → {with_half(found, half)}"
+    if compared.percent is not None:
+        share = f" ({'+' if compared.percent > 0.0 else ''}{signed(compared.percent, 0)} %)"
+    said = f"{quantity.symbol} {signed(given, decimals_for(half))} → {with_half(value, half)}"
     return f"{said} {quantity.unit.removesuffix('1')}".rstrip() + share
 
 
@@ -115,6 +115,6 @@ def heading(d: Weighed) -> str:
     """Return the heading above the reasons for a diagnosis; empty without reasons."""
     if d.answer is None or not d.why:
         return ""
-    stated = {one.alternative.label: in_words(one.alternative) for one in d.evidence}
+    stated = {e.alternative.label: in_words(e.alternative) for e in d.evidence}
     answer, rival = in_words(d.answer), stated[d.rival]
     return f"why {answer}, and not {rival}: parts of the log odds, in nats"

@@ -27,14 +27,14 @@ def criterion(content: Content) -> Iterator[Block]:
     """Yield a figure for each rule, and its values as a table."""
     by_rule = content.analysis["flight_test"]["by_rule"]
     limits = {rule: limit_percent(rule, content.aircraft.campaign) for rule in by_rule}
-    if all(value is None for one in by_rule.values() for value in one["history_percent"]):
+    if all(value is None for part in by_rule.values() for value in part["history_percent"]):
         yield Paragraph("No rule's criterion has a value yet: too few manoeuvres are accepted.")
         return
     yield Paragraph(_EXPLAINED)
-    yield Gallery(tuple(_figure(rule, one, limits[rule]) for rule, one in by_rule.items()))
+    yield Gallery(tuple(_figure(rule, part, limits[rule]) for rule, part in by_rule.items()))
     progress = content.state.flight_test.by_rule
-    yield from listing([f"Rule {rule}, {one.hindsight}." for rule, one in progress.items() if one.hindsight])
-    flown = max((len(one["history_percent"]) for one in by_rule.values()), default=0)
+    yield from listing([f"Rule {rule}, {p.hindsight}." for rule, p in progress.items() if p.hindsight])
+    flown = max((len(part["history_percent"]) for part in by_rule.values()), default=0)
     first = max(flown - _NEWEST, 0)
     newest = f", the newest {_NEWEST}" if first else ""
     yield Table(
@@ -42,7 +42,7 @@ def criterion(content: Content) -> Iterator[Block]:
         f"Criterion in percent after each manoeuvre{newest}; – where it has no value yet.",
         ("flown", *(f"{rule} (limit {limits[rule]:g})" for rule in by_rule)),
         tuple(
-            (str(i + 1), *(_value(one["history_percent"], i) for one in by_rule.values()))
+            (str(i + 1), *(_value(part["history_percent"], i) for part in by_rule.values()))
             for i in range(first, flown)
         ),
         frozenset(range(len(by_rule) + 1)),
@@ -54,22 +54,22 @@ def _value(history: Sequence[float | None], i: int) -> str:
     return "–" if value is None else f"{value:.1f}"
 
 
-def _figure(rule: str, one: Mapping[str, Any], limit: float) -> Figure:
-    svg = picture(f"criterion-{rule}", 3.2, 2.4, _paint, one, limit)
-    stopped = one["stopped_at"]
+def _figure(rule: str, part: Mapping[str, Any], limit: float) -> Figure:
+    svg = picture(f"criterion-{rule}", 3.2, 2.4, _paint, part, limit)
+    stopped = part["stopped_at"]
     said = "does not say stop" if stopped is None else f"says stop after manoeuvre {stopped}"
     return Figure(svg, f"Rule {rule}: {said}.", "third")
 
 
-def _paint(drawing: Drawing, one: Mapping[str, Any], limit: float) -> None:
+def _paint(drawing: Drawing, part: Mapping[str, Any], limit: float) -> None:
     axes = drawing.subplots()
-    history = [(i, v) for i, v in enumerate(one["history_percent"], start=1) if v is not None and v > 0.0]
+    history = [(i, v) for i, v in enumerate(part["history_percent"], start=1) if v is not None and v > 0.0]
     axes.plot([i for i, _ in history], [v for _, v in history], color=BLUE, marker="o", markersize=3.5)
     axes.axhline(limit, color=BLACK, linestyle="--", linewidth=1.0)
     axes.annotate(
         f"limit {limit:g} %", (0.01, limit), xycoords=("axes fraction", "data"), ha="left", va="bottom"
     )
-    stopped = [(i, v) for i, v in history if i == one["stopped_at"]]
+    stopped = [(i, v) for i, v in history if i == part["stopped_at"]]
     if stopped:
         axes.plot(*stopped[0], marker="D", markersize=9, markerfacecolor="none", markeredgecolor=BLACK)
     low, high = _range([limit, *(v for _, v in history)])
@@ -78,7 +78,7 @@ def _paint(drawing: Drawing, one: Mapping[str, Any], limit: float) -> None:
     axes.yaxis.set_major_locator(FixedLocator(log_ticks(low, high)))
     axes.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:,.9g}"))
     axes.yaxis.set_minor_locator(NullLocator())
-    axes.set_xlim(0.5, len(one["history_percent"]) + 0.5)
+    axes.set_xlim(0.5, len(part["history_percent"]) + 0.5)
     axes.xaxis.set_major_locator(MaxNLocator(integer=True, min_n_ticks=1))
     axes.set(xlabel="manoeuvres flown", ylabel="criterion [%]")
 

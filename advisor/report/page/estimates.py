@@ -45,7 +45,7 @@ def estimates(content: Content) -> Iterator[Block]:
             "instruments",
             f"{nuisances[0][0].source}: nuisance parameters; ± is half the 95 % interval.",
             ("nuisance parameter", "estimate ± 95 %", "aircraft file", "unit"),
-            tuple((one.name, one.cell, stated, one.unit) for one, stated in nuisances), frozenset({1, 2}),
+            tuple((fact.name, fact.cell, stated, fact.unit) for fact, stated in nuisances), frozenset({1, 2}),
         )  # fmt: skip
     yield from regression_table(model, "equation-error")
     alone = {
@@ -67,20 +67,20 @@ def _forest(
     name: str, alone: Mapping[str, Mapping[str, EstimatedParameter]], joint: Mapping[str, EstimatedParameter]
 ) -> Figure:
     rows = [*((number, parameters[name]) for number, parameters in alone.items()), ("joint", joint[name])]
-    known = [(label, row) for label, row in rows if row.is_known]
-    svg = picture(f"forest-{name}", 2.4, min(0.9 + 0.15 * len(rows), _TALLEST_IN), _paint, joint[name], known)
-    told = "" if joint[name].prior is None else " Dashes: the simulator's value."
+    drawn = [(label, row) for label, row in rows if row.is_known]
+    svg = picture(f"forest-{name}", 2.4, min(0.9 + 0.15 * len(rows), _TALLEST_IN), _paint, joint[name], drawn)
+    dashes = "" if joint[name].prior is None else " Dashes: the simulator's value."
     symbol = joint[name].name
     return Figure(
-        svg, f"{symbol}: each manoeuvre and the joint estimate with 95 % intervals.{told}", "quarter"
+        svg, f"{symbol}: each manoeuvre and the joint estimate with 95 % intervals.{dashes}", "quarter"
     )
 
 
 def _paint(
-    drawing: Drawing, joint: EstimatedParameter, known: Sequence[tuple[str, EstimatedParameter]]
+    drawing: Drawing, joint: EstimatedParameter, drawn: Sequence[tuple[str, EstimatedParameter]]
 ) -> None:
     axes = drawing.subplots()
-    for at, (label, row) in enumerate(known):
+    for at, (label, row) in enumerate(drawn):
         of_all = label == "joint"
         axes.errorbar(
             row.value, at, xerr=row.half,
@@ -89,8 +89,8 @@ def _paint(
         )  # fmt: skip
     if joint.prior is not None:
         axes.axvline(joint.prior, color=ORANGE, linestyle="--", linewidth=1.0)
-    every = -(-len(known) // _MOST_LABELS)
-    named = [(at, label) for at, (label, _) in enumerate(known) if at % every == 0 or label == "joint"]
+    every = -(-len(drawn) // _MOST_LABELS)
+    named = [(at, label) for at, (label, _) in enumerate(drawn) if at % every == 0 or label == "joint"]
     axes.set_yticks([at for at, _ in named], [label for _, label in named])
     axes.invert_yaxis()
     axes.set_xlabel(joint.label)

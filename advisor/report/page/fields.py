@@ -28,21 +28,21 @@ def fields(content: Content) -> Iterator[Block]:
     for flight, (name, asked) in enumerate(zip(content.names, content.fields, strict=False)):
         if asked:
             drawn = picture(f"fields-{flight}", _WIDTH_IN, 3.2, _paint, asked)
-            told = f"{name}: {', '.join(one.name for one in asked)}, in the log's units."
-            yield Gallery((Figure(drawn, told),))
+            caption = f"{name}: {', '.join(field.name for field in asked)}, in the log's units."
+            yield Gallery((Figure(drawn, caption),))
 
 
 def _paint(drawing: Drawing, asked: Sequence[FieldSum]) -> None:
     first = drawing.subplots()
     first.set_xlabel(f"time ({CLOCK})")
     first.xaxis.set_major_formatter(FuncFormatter(lambda t, _: clock(t)))
-    for k, one in enumerate(asked):
+    for k, field in enumerate(asked):
         axes = first if k == 0 else first.twinx()
         colour, style = _LOOKS[k % len(_LOOKS)]
-        whole = np.isfinite(one.y)
-        t, y = thinned(Channel(one.name, one.t[whole], one.y[whole]), _BINS)
+        whole = np.isfinite(field.y)
+        t, y = thinned(Channel(field.name, field.t[whole], field.y[whole]), _BINS)
         axes.plot(t, y, color=colour, linestyle=style, linewidth=0.8)
-        axes.set_ylabel(one.name, color=colour)
+        axes.set_ylabel(field.name, color=colour)
         axes.tick_params(axis="y", colors=colour)
         if k:
             axes.grid(visible=False)

@@ -74,8 +74,8 @@ def _large(
     inputs = _inputs(judged, controls)
     height = 0.45 + 0.45 * len(inputs) + 1.45 * len(outputs)
     svg = picture(f"{name}-{number}", 3.6, height, _paint_large, inputs, outputs, _start(judged))
-    told = "; ".join(_measures(fit, estimate) for fit in outputs)
-    caption = f"Manoeuvre {number}, {judged.maneuver.span.kind}, the {rank} fit. {told}."
+    measures = "; ".join(_measures(fit, estimate) for fit in outputs)
+    caption = f"Manoeuvre {number}, {judged.maneuver.span.kind}, the {rank} fit. {measures}."
     return Figure(svg, caption, "half")
 
 
@@ -86,15 +86,15 @@ def _small(
     outputs = tuple(fit for output, fit in estimate.fits[0].items() if output in _SMALL)
     height = 0.45 + 0.3 * len(inputs) + 0.65 * len(outputs)
     svg = picture(f"{name}-{number}", 2.0, height, _paint_small, inputs, outputs, _start(judged))
-    told = ", ".join(f"{CHANNELS[fit.name].symbol} R² {fit.r2:.3f}" for fit in estimate.fits[0].values())
-    return Figure(svg, f"Manoeuvre {number}, {judged.maneuver.span.kind}: {told}.", size)
+    measures = ", ".join(f"{CHANNELS[fit.name].symbol} R² {fit.r2:.3f}" for fit in estimate.fits[0].values())
+    return Figure(svg, f"Manoeuvre {number}, {judged.maneuver.span.kind}: {measures}.", size)
 
 
 def _measures(fit: ChannelFit, estimate: Estimate) -> str:
     quantity, band = CHANNELS[fit.name], estimate.prediction.get(fit.name)
-    known = "" if band is None else f", known to {100.0 * band:.1f} % of its peak (95 %)"
+    accuracy = "" if band is None else f", known to {100.0 * band:.1f} % of its peak (95 %)"
     rms = f"{fit.rms * quantity.factor:.3g} {quantity.unit}"
-    return f"{quantity.symbol}: R² {fit.r2:.3f}, Theil {fit.tic:.3f}, residual {rms} rms{known}"
+    return f"{quantity.symbol}: R² {fit.r2:.3f}, Theil {fit.tic:.3f}, residual {rms} rms{accuracy}"
 
 
 def _inputs(judged: JudgedManeuver, controls: Sequence[str]) -> Inputs:

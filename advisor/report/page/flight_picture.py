@@ -118,13 +118,13 @@ def _number(rows: Sequence[Axes], shown: Sequence[str], judged: Sequence[Sequenc
     """Write the number of each manoeuvre above its axis' first row, as a link to its table row."""
     for axis, own, flown in (("", _OF_PITCH, judged[0]), ("R", _OF_SIDE, judged[1])):
         top = rows[next((k for k, name in enumerate(shown) if name in own), 0)]
-        for one in flown:
-            middle = 0.5 * (one.maneuver.span.start_s + one.maneuver.span.end_s)
-            sign = "✓" if one.verdict.accepted else "✗"
+        for judgement in flown:
+            middle = 0.5 * (judgement.maneuver.span.start_s + judgement.maneuver.span.end_s)
+            sign = "✓" if judgement.verdict.accepted else "✗"
             top.annotate(
-                f"{axis}{one.maneuver.number}{sign}", (middle, 1.0), xycoords=("data", "axes fraction"),
+                f"{axis}{judgement.maneuver.number}{sign}", (middle, 1.0), xycoords=("data", "axes fraction"),
                 ha="center", va="bottom", fontsize=8, annotation_clip=False,
-                url=f"#{ANCHORS[axis]}-{one.maneuver.number}",
+                url=f"#{ANCHORS[axis]}-{judgement.maneuver.number}",
             )  # fmt: skip
 
 
@@ -161,8 +161,8 @@ def _paint_layer(axes: Axes, channel: Channel) -> None:
 
 
 def _mark(axes: Axes, judged: Sequence[JudgedManeuver]) -> None:
-    for one in judged:
-        span, accepted = one.maneuver.span, one.verdict.accepted
+    for judgement in judged:
+        span, accepted = judgement.maneuver.span, judgement.verdict.accepted
         look = {"facecolor": "#d7e6d5", "edgecolor": "none"}
         if not accepted:
             look = {"facecolor": "#f3dfcf", "edgecolor": ORANGE, "hatch": "//"}

@@ -49,7 +49,7 @@ def flying(content: Content) -> Iterator[Block]:
         yield Table(
             "coefficients", f"Coefficients {document['convention']}. Drag's part in the lift is neglected.",
             ("coefficient", "value ± 95 %"),
-            tuple((name, _cell(name, one)) for name, one in coefficients.items()), frozenset({1}),
+            tuple((name, _cell(name, estimate)) for name, estimate in coefficients.items()), frozenset({1}),
         )  # fmt: skip
     air = document["air"]
     logged, true = air["airspeed_m_s"], air["true_airspeed_m_s"]
@@ -61,8 +61,8 @@ def flying(content: Content) -> Iterator[Block]:
     )
 
 
-def _cell(name: str, one: Document) -> str:
-    return fact_of(name, "Joint estimate", one["value"], one["std"]).cell
+def _cell(name: str, estimate: Document) -> str:
+    return fact_of(name, "Joint estimate", estimate["value"], estimate["std"]).cell
 
 
 _FILLS = ("#c6dbef", "#e1ecf7", "#f3f7fb")
@@ -103,7 +103,7 @@ def ellipse(document: Document) -> tuple[FloatArray, FloatArray]:
     The region is an ellipse in the logarithms, so both values stay positive.
     """
     load, frequency = document["n_alpha"], document["natural_frequency"]
-    across, up = (one["std"] / one["value"] for one in (load, frequency))
+    across, up = (quality["std"] / quality["value"] for quality in (load, frequency))
     angle = np.linspace(0.0, 2.0 * np.pi, 181)
     first, second = PAIR_95 * np.cos(angle), PAIR_95 * np.sin(angle)
     rho = document["correlation"]

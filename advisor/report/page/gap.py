@@ -43,7 +43,7 @@ def gap(content: Content) -> Iterator[Block]:
     size, shrink = part["gap"], part["shrink"]
     if part["parameters_changed"]:
         yield Paragraph("Derivatives that differ from the simulator's; the others agree within 95 %:")
-        yield from listing([one["text"] for one in part["parameters_changed"]])
+        yield from listing([derivative["text"] for derivative in part["parameters_changed"]])
     grown = size["grown"] and f"{size['grown'][0].upper()}{size['grown'][1:]}"
     said = (size["text"], shrink and shrink["text"], grown)
     yield Paragraph(f"{_DEFINED}{'. '.join(filter(None, said))}.")
@@ -69,7 +69,7 @@ def gap(content: Content) -> Iterator[Block]:
             tuple(_cause(cause, size["before"]) for cause in causes), frozenset({1, 3}),
         )  # fmt: skip
     if part["why"]:
-        reasons = weighed((one["nats"], one["text"]) for one in part["why"])
+        reasons = weighed((reason["nats"], reason["text"]) for reason in part["why"])
         title = part["why_heading"]
         yield Table(
             "gap-why",

@@ -70,7 +70,7 @@ def _small(document: Document) -> str:
 
 def worst(document: Document) -> int:
     """Return the number of the manoeuvre with the largest gap."""
-    return int(max(document["gap"]["by_maneuver"], key=lambda one: one["before"])["number"])
+    return int(max(document["gap"]["by_maneuver"], key=lambda m: m["before"])["number"])
 
 
 def write_gap_picture(document: Document, path: Path) -> None:

@@ -44,7 +44,7 @@ def _flown(content: Content) -> Table:
     weighs = "mass not given" if mass is None else f"{mass:g} kg"
     rows = []
     for flight, name in enumerate(content.names):
-        heard = next((one for one in content.state.flights if one.flight == flight), None)
+        heard = next((log for log in content.state.flights if log.flight == flight), None)
         vehicle = heard.vehicle if heard is not None else None
         minutes, seconds = divmod(round(heard.duration_s), 60) if heard is not None else (0, 0)
         rows.append(

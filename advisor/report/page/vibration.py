@@ -32,8 +32,8 @@ def _shown(flight: int, name: str, spectra: Sequence[Spectrum]) -> Iterator[Bloc
     yield Gallery((Figure(broad, caption),))
     head = ("sensor", "x", "y", "z", "unit", "highest Hz shown")
     rows = tuple((s.name, *(f"{v:.3g}" for v in s.rms), s.unit, f"{s.highest_hz:.1f}") for s in spectra)
-    told = f"Root mean square of {name} without the mean."
-    yield Table(f"vibration-rms-{flight}", told, head, rows, frozenset({1, 2, 3, 5}))
+    title = f"Root mean square of {name} without the mean."
+    yield Table(f"vibration-rms-{flight}", title, head, rows, frozenset({1, 2, 3, 5}))
 
 
 def _clipped(measured: Vibration) -> str:
@@ -44,10 +44,10 @@ def _clipped(measured: Vibration) -> str:
 
 def _paint(drawing: Drawing, spectra: Sequence[Spectrum]) -> None:
     rows = drawing.subplots(len(spectra), 1, squeeze=False)[:, 0]
-    for axes, one in zip(rows, spectra, strict=True):
-        for values, (name, colour, style) in zip(one.density, _AXES, strict=True):
-            axes.semilogy(one.frequency_hz[1:], values[1:], color=colour, linestyle=style, label=name, lw=0.7)
-        axes.set_title(one.name, loc="left")
-        axes.set_ylabel(f"({one.unit})²/Hz")
+    for axes, psd in zip(rows, spectra, strict=True):
+        for values, (name, colour, style) in zip(psd.density, _AXES, strict=True):
+            axes.semilogy(psd.frequency_hz[1:], values[1:], color=colour, linestyle=style, label=name, lw=0.7)
+        axes.set_title(psd.name, loc="left")
+        axes.set_ylabel(f"({psd.unit})²/Hz")
     rows[0].legend(loc="upper right", ncols=3)
     rows[-1].set_xlabel("frequency, Hz")

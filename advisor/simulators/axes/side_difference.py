@@ -166,7 +166,7 @@ def _surrogate(records: tuple[LateralRecord, ...], flown: LateralProblem, said: 
 def _file(surrogate: Solution, aircraft: Aircraft, said: str) -> Aircraft:
     """Return the aircraft file with the surrogate as its model, and with both servos in series."""
     untold = lateral_not_identifiable(surrogate)
-    told = zip(LATERAL.names.reported, surrogate.theta, strict=True)
+    estimated = zip(LATERAL.names.reported, surrogate.theta, strict=True)
     servos = {}
     for name in LATERAL.inputs:
         control = getattr(aircraft, name)
@@ -181,7 +181,7 @@ def _file(surrogate: Solution, aircraft: Aircraft, said: str) -> Aircraft:
         )
     return replace(
         aircraft,
-        model={name: float(value) for name, value in told if name not in untold},
+        model={name: float(value) for name, value in estimated if name not in untold},
         reference_airspeed_m_s=surrogate.problem.reference_airspeed_m_s or aircraft.reference_airspeed_m_s,
         simulator=said,
         **servos,

@@ -85,7 +85,7 @@ drifts shows an aircraft that changes.
 
 def _small(chart: Chart, x_label: str, *, foot: bool) -> Chart:
     """Return a chart without the names that the pane's frame shows for all plots."""
-    series = tuple(replace(one, name="") for one in chart.series)
+    series = tuple(replace(line, name="") for line in chart.series)
     levels = tuple(replace(level, name="") for level in chart.levels)
     return replace(chart, x_label=x_label, foot=foot, series=series, levels=levels)
 
@@ -117,13 +117,13 @@ class ParameterCourse:
 
 def course(view: View | None, name: str) -> ParameterCourse:
     """Collect one parameter's estimates, manoeuvre by manoeuvre."""
-    known = view.aircraft.model if view else {}
+    prior = view.aircraft.model if view else {}
     rows = [
-        (judged.maneuver.number, of_one(name, judged, known))
+        (judged.maneuver.number, of_one(name, judged, prior))
         for judged in (view.state.maneuvers if view else ())
     ]
     points = [(number, row) for number, row in rows if row.is_known]
-    joint = of_all(name, view.state, known) if view else of_one(name, None, known)
+    joint = of_all(name, view.state, prior) if view else of_one(name, None, prior)
     return ParameterCourse(
         name,
         np.array([number for number, _ in points], dtype=np.float64),

@@ -79,7 +79,7 @@ def _rows(verdict: FlightTestVerdict) -> list[Labelled]:
 def _chart(verdict: FlightTestVerdict | None) -> Chart:
     series = []
     rules = verdict.by_rule.items() if verdict else ()
-    for rule, progress in sorted(rules, key=lambda one: verdict is None or one[0] != verdict.rule):
+    for rule, progress in sorted(rules, key=lambda item: verdict is None or item[0] != verdict.rule):
         share = np.array([np.nan if v is None else v for v in progress.percent_of_limit], dtype=np.float64)
         if np.isfinite(share).any():
             numbers = np.arange(1.0, len(share) + 1.0)

@@ -61,7 +61,7 @@ def measured(judged: JudgedManeuver, name: str) -> Curve | None:
 
 def extent(judged: JudgedManeuver, over: JudgedManeuver | None) -> tuple[float, float]:
     """Return the first and the last time that the plots show, in seconds since the start of the input."""
-    spans = [one.maneuver.span for one in (judged, over) if one is not None]
+    spans = [j.maneuver.span for j in (judged, over) if j is not None]
     first = min(span.record_from_s - span.start_s for span in spans)
     last = max(span.end_s - span.start_s for span in spans)
     return (first, last) if last > first else (first, first + 1.0)
@@ -117,9 +117,7 @@ def no_fit(name: str, why: str) -> Chart:
 def rows_of_fit(judged: JudgedManeuver, over: JudgedManeuver | None, axis: Shown) -> TableRows:
     """Return one row per sample of the controls and all outputs, for one manoeuvre or two."""
     header = ("manoeuvre", "channel", "unit", "t_s", "measured", "fitted", "residual")
-    return TableRows(
-        header, tuple(row for one in (judged, over) if one is not None for row in _samples(one, axis))
-    )
+    return TableRows(header, tuple(row for j in (judged, over) if j is not None for row in _samples(j, axis)))
 
 
 def _samples(judged: JudgedManeuver, axis: Shown) -> list[tuple[object, ...]]:

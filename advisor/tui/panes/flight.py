@@ -171,7 +171,7 @@ def _maneuvers(view: View, low: float, high: float, width: int) -> str:
     here = (view.state.flight, view.state.boot)
     axes = view.state.axes.items()
     flown = [("R" if name == "lateral" else "", j) for name, axis in axes for j in axis.maneuvers]
-    for axis, judged in sorted(flown, key=lambda one: one[1].maneuver.span.start_s):
+    for axis, judged in sorted(flown, key=lambda pair: pair[1].maneuver.span.start_s):
         if judged.maneuver.power_on != here:
             continue
         text = f"{axis}{judged.maneuver.number}{symbol_and_word(judged)[0]}"

@@ -109,13 +109,13 @@ findings.
 
     def _draw(self, document: Document) -> None:
         """Draw the manoeuvre with the largest gap, if its curves exist."""
-        found = document.get("lateral") or document
-        if found["gap"] is None or not found["traces"]:
+        part = document.get("lateral") or document
+        if part["gap"] is None or not part["traces"]:
             return
-        worst = max(found["gap"]["by_maneuver"], key=lambda one: one["before"])["number"]
+        worst = max(part["gap"]["by_maneuver"], key=lambda m: m["before"])["number"]
         self.subtitle(f"manoeuvre {worst}, the largest gap")
-        mine = {t["channel"]: t for t in found["traces"] if t["number"] == worst}
-        for name, plot in self._plots(sideways=found is not document):
+        mine = {t["channel"]: t for t in part["traces"] if t["number"] == worst}
+        for name, plot in self._plots(sideways=part is not document):
             plot.chart = _chart(name, mine[name]) if name in mine else _empty(name)
 
     def _plots(self, *, sideways: bool) -> Iterator[tuple[str, Plot]]:
@@ -137,25 +137,25 @@ def answer_rows(document: Document) -> Iterator[Labelled]:
     """Yield rows: the answer, its certainty and limits, the differences, the reduction of the gap, the next
     steps and the reasons.
     """
-    found = document.get("lateral") or document
-    if found["sentence"] is None:
+    part = document.get("lateral") or document
+    if part["sentence"] is None:
         yield from (("✗ ", f"{problem['text']} {problem['fix']}") for problem in document["problems"])
         return
-    axis = "" if found is document else "Roll and yaw. "
-    yield "", f"{axis}{found['title']}: {found['sentence']}"
-    if found["how_sure"]:
-        yield "", found["how_sure"]
-    yield from (("! ", limit) for limit in found["limits"])
-    yield from (("  ", one["text"]) for one in found["parameters_changed"])
-    size, shrink = found["gap"], found["shrink"]
-    yield from (("", one["text"]) for one in (size, shrink) if one is not None)
+    axis = "" if part is document else "Roll and yaw. "
+    yield "", f"{axis}{part['title']}: {part['sentence']}"
+    if part["how_sure"]:
+        yield "", part["how_sure"]
+    yield from (("! ", limit) for limit in part["limits"])
+    yield from (("  ", change["text"]) for change in part["parameters_changed"])
+    size, shrink = part["gap"], part["shrink"]
+    yield from (("", entry["text"]) for entry in (size, shrink) if entry is not None)
     if size is not None and size["grown"]:
         yield f"{WORSE} ", size["grown"]
-    for number, step in enumerate(found["next"], start=1):
+    for number, step in enumerate(part["next"], start=1):
         yield f"{number}. ", " ".join(filter(None, (step["text"], step["command"])))
-    if found["why"]:
-        yield "", found["why_heading"]
-        reasons = weighed((one["nats"], one["text"]) for one in found["why"])
+    if part["why"]:
+        yield "", part["why_heading"]
+        reasons = weighed((reason["nats"], reason["text"]) for reason in part["why"])
         yield from ((f"{nats:>6}  ", said) for nats, said in reasons)
 
 

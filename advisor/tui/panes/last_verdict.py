@@ -95,7 +95,7 @@ with **!** does not reject the manoeuvre but belongs on its verdict.
         if view.judged is not None:
             flight = view.judged.maneuver.flight
             of = next(
-                (f" of {one.name}" for one in view.state.flights if one.flight == flight and one.name), ""
+                (f" of {log.name}" for log in view.state.flights if log.flight == flight and log.name), ""
             )
             self.write(_rows(view.judged, of))
 
@@ -131,5 +131,5 @@ def _rows(judged: JudgedManeuver, of: str) -> list[Labelled]:
 
 def _limits(verdict: ManeuverVerdict) -> str:
     """Return each stopping rule's limit of the fit's cost J."""
-    limits = [f"{rule} {one.limit:.3g}" for rule, one in verdict.rules.items() if one.limit is not None]
+    limits = [f"{rule} {rules.limit:.3g}" for rule, rules in verdict.rules.items() if rules.limit is not None]
     return f" (limit {', '.join(limits)})" if limits else ""

@@ -165,7 +165,7 @@ def _rows(view: View) -> Iterator[Labelled]:
     yield from _other_axis(view)
     if view.health.condition in ("poor", "lost"):
         yield "link        ", view.health.sentence
-    corrected = [found for found in view.state.instruments if found.contradicts and found.used]
+    corrected = [finding for finding in view.state.instruments if finding.contradicts and finding.used]
     count = len(view.state.flight_test.warnings) + len(corrected)
     if count:
         yield "! ", f"{count} warning{'s' if count > 1 else ''} for the engineer: key e, panes 6 and 7"

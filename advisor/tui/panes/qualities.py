@@ -45,5 +45,5 @@ def _lines(view: View) -> Iterable[str]:
     side, reference = view.state.lateral, view.aircraft.reference
     if view.elevator is not None and side is not None:
         return side_quality_lines(side, view.aircraft)
-    found = qualities_of(view.state, reference)
-    return () if found is None else quality_lines(found, coefficients_of(view.state, reference))
+    qualities = qualities_of(view.state, reference)
+    return () if qualities is None else quality_lines(qualities, coefficients_of(view.state, reference))

@@ -72,9 +72,9 @@ class PaneActions(Face):
         if view is None or judged is None:
             self.say("There is no manoeuvre yet over which another could be laid.")
             return
-        known = {j.maneuver.number for j in view.state.maneuvers}
-        if number and (number not in known or number == judged.maneuver.number):
-            self.say(f"Choose another manoeuvre than {judged.maneuver.number}, from {_listed(known)}.")
+        numbers = {j.maneuver.number for j in view.state.maneuvers}
+        if number and (number not in numbers or number == judged.maneuver.number):
+            self.say(f"Choose another manoeuvre than {judged.maneuver.number}, from {_listed(numbers)}.")
             return
         self.query_one(Fit).lay_over(number or None)
         self.show(view)

@@ -26,7 +26,7 @@ def lateral(content: Content) -> Iterator[Block]:
         return
     yield from decided(content.state, pitch=False)
     rows = tuple(
-        maneuver_row(one, several=len(content.names) > 1) for one in content.analysis["lateral"]["maneuvers"]
+        maneuver_row(m, several=len(content.names) > 1) for m in content.analysis["lateral"]["maneuvers"]
     )
     yield Table(
         ANCHORS["R"], f"Inputs of aileron and rudder; times are {CLOCK}.", HEAD, rows,
@@ -55,7 +55,7 @@ def _modes(content: Content, state: LateralState) -> Iterator[Block]:
         yield Table(
             "lateral-modes", "Modes of the joint estimate, ± half the 95 % interval (delta method).",
             ("mode", "value ± 95 %", "unit"),
-            tuple((one.name, one.cell, one.unit) for one in modes),
+            tuple((mode.name, mode.cell, mode.unit) for mode in modes),
             frozenset({1}),
         )  # fmt: skip
     levels = levels_of(state)
@@ -65,12 +65,12 @@ def _modes(content: Content, state: LateralState) -> Iterator[Block]:
             ("classes", "category", "all modes", *(MODE_NAMES[mode] for mode in levels[0].by_mode)),
             tuple(
                 (
-                    f"{one.group} ({GROUPS[one.group]})",
-                    one.category,
-                    one.governing.sentence.partition(": ")[2],
-                    *(str(level.level) for level in one.by_mode.values()),
+                    f"{rated.group} ({GROUPS[rated.group]})",
+                    rated.category,
+                    rated.governing.sentence.partition(": ")[2],
+                    *(str(level.level) for level in rated.by_mode.values()),
                 )
-                for one in levels
+                for rated in levels
             ),
         )  # fmt: skip
         yield Paragraph(MANNED, "note")
