@@ -57,16 +57,16 @@ def up_to(until_s: float, flying: Maneuver, since_s: float = -inf) -> Maneuver:
 
 
 def _added(
-    cut: Maneuver, known: Known, motion: Motion, needed: Set[str], judged: Sequence[str]
+    cut: Maneuver, before: Known, motion: Motion, needed: Set[str], judged: Sequence[str]
 ) -> dict[str, float]:
     """Return the errors of the judged derivatives with the samples of a cut input."""
-    model = known.model
+    model = before.model
     assert model is not None
     names = [name for name in judged if name in model.names]
     if not needed <= cut.channels.keys():
-        return {name: percent for name in names if (percent := known.percent[name]) is not None}
+        return {name: percent for name in names if (percent := before.percent[name]) is not None}
     t, columns = sensitivities(motion, cut, model)
-    return _after(cut, model, known.percent, t, columns, names)
+    return _after(cut, model, before.percent, t, columns, names)
 
 
 def _after(
@@ -80,21 +80,21 @@ def _after(
     """Return the errors, with the new information, of the judged derivatives that were known before the
     input.
     """
-    known = [
+    places = [
         k for k, name in enumerate(model.names) if model.covariance[k, k] > 0.0 and not name.endswith("_0")
     ]
-    known = [k for k in known if model.names[k] not in model.not_identifiable]
-    added = _information(cut, model, t, columns, known)
-    own = model.own_covariance[np.ix_(known, known)]
-    white = np.diag(model.own_covariance_cr)[known]
+    places = [k for k in places if model.names[k] not in model.not_identifiable]
+    added = _information(cut, model, t, columns, places)
+    own = model.own_covariance[np.ix_(places, places)]
+    white = np.diag(model.own_covariance_cr)[places]
     wide = np.sqrt(np.maximum(np.diag(own) / np.maximum(white, 1e-300), 1.0))
     try:
         together = np.linalg.inv(np.linalg.inv(own) + added / np.outer(wide, wide))
     except np.linalg.LinAlgError:
         return {}
-    common = np.diag(model.covariance)[known] - np.diag(own)
+    common = np.diag(model.covariance)[places] - np.diag(own)
     ratio = np.sqrt((np.diag(together) + common) / (np.diag(own) + common))
-    shares = dict(zip([model.names[k] for k in known], ratio.tolist(), strict=True))
+    shares = dict(zip([model.names[k] for k in places], ratio.tolist(), strict=True))
     return {
         name: percent * shares[name]
         for name in judged
@@ -103,7 +103,7 @@ def _after(
 
 
 def _information(
-    cut: Maneuver, model: Estimate, t: FloatArray, columns: Mapping[str, FloatArray], known: Sequence[int]
+    cut: Maneuver, model: Estimate, t: FloatArray, columns: Mapping[str, FloatArray], places: Sequence[int]
 ) -> FloatArray:
     """Return the information on the known derivatives, with all other columns unknown."""
     fits = model.fits[-1]
@@ -113,8 +113,8 @@ def _information(
         if name in columns and name in cut.channels
     ]
     whole = np.vstack(rows) if rows else np.zeros((1, next(iter(columns.values())).shape[1]))
-    others = [k for k in range(whole.shape[1]) if k not in known]
+    others = [k for k in range(whole.shape[1]) if k not in places]
     beside = whole[:, others]
     # The part of each sensitivity that no other column can take up.
-    rest = whole[:, known] - beside @ np.linalg.lstsq(beside, whole[:, known], rcond=None)[0]
+    rest = whole[:, places] - beside @ np.linalg.lstsq(beside, whole[:, places], rcond=None)[0]
     return np.asarray(rest.T @ rest)

@@ -88,9 +88,9 @@ def beyond_in_alpha(posteriors: Sequence[Posterior], plan: CampaignPlan = USUAL)
     contradiction may have another cause. A minority at one end of the range is compared with all others,
     whose scatter widens the errors of both.
     """
-    known = [i for i, posterior in enumerate(posteriors) if np.all(np.isfinite(posterior.alpha_rad))]
-    rising = sorted(known, key=lambda i: _middle(posteriors[i]))
-    found: dict[int, Outlier] = {}
+    measured = [i for i, posterior in enumerate(posteriors) if np.all(np.isfinite(posterior.alpha_rad))]
+    rising = sorted(measured, key=lambda i: _middle(posteriors[i]))
+    outliers: dict[int, Outlier] = {}
     for order in (rising, rising[::-1]):
         for k in range(1, (len(order) + 1) // 2):
             rest = [posteriors[i] for i in order[:-k]]
@@ -103,8 +103,8 @@ def beyond_in_alpha(posteriors: Sequence[Posterior], plan: CampaignPlan = USUAL)
             for i in order[-k:]:
                 apart = AlphaApart(_middle(posteriors[i]), (lowest, highest))
                 if (outlier := _apart(posteriors[i], others, plan)) is not None:
-                    found[i] = replace(outlier, alpha=apart)
-    return found
+                    outliers[i] = replace(outlier, alpha=apart)
+    return outliers
 
 
 def _middle(posterior: Posterior) -> float:

@@ -54,9 +54,9 @@ class CriterionCourse:
         kept = next((k for k, (mine, theirs) in pairs if mine is not theirs), len(self._flown))
         del self._flown[kept:], self._standings[kept:]
         for k in range(kept, len(usable)):
-            known = self.knowledge(usable[: k + 1])
+            knowledge = self.knowledge(usable[: k + 1])
             self._flown.append(usable[k])
-            self._standings.append(Standing(known.percent, known.sufficient, known.predicted))
+            self._standings.append(Standing(knowledge.percent, knowledge.sufficient, knowledge.predicted))
 
 
 def same(mine: Sequence[object], theirs: Sequence[object]) -> bool:

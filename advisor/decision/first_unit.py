@@ -69,8 +69,8 @@ def first_unit_s(
 
 
 def _elevator_by_file(aircraft: Aircraft) -> float | None:
-    known = set(_STIFFNESS) <= set(aircraft.model)
-    return matched_unit_s(ShortPeriod.from_mapping(aircraft.model)) if known else None
+    is_known = set(_STIFFNESS) <= set(aircraft.model)
+    return matched_unit_s(ShortPeriod.from_mapping(aircraft.model)) if is_known else None
 
 
 def _elevator_shown(estimate: Estimate) -> float | None:

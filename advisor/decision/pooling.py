@@ -184,15 +184,15 @@ def pool(posteriors: Sequence[Posterior]) -> Posterior:
     gain = each.mean(axis=0)
     own = np.sum(covariances[:, c][:, :, c] - each @ np.swapaxes(cross, 1, 2), axis=0) / n**2
     theta, covariance = np.empty(len(names)), np.empty((len(names), len(names)))
-    known = _finite(shared.covariance)
+    finite = _finite(shared.covariance)
     theta[d], theta[c] = shared.theta, np.mean(values[:, c] + np.einsum("nij,nj->ni", each, apart), axis=0)
-    covariance[np.ix_(d, d)], covariance[np.ix_(c, c)] = shared.covariance, own + gain @ known @ gain.T
-    covariance[np.ix_(c, d)] = gain @ known
-    covariance[np.ix_(d, c)] = (gain @ known).T
+    covariance[np.ix_(d, d)], covariance[np.ix_(c, c)] = shared.covariance, own + gain @ finite @ gain.T
+    covariance[np.ix_(c, d)] = gain @ finite
+    covariance[np.ix_(d, c)] = (gain @ finite).T
     return Posterior(theta, covariance, posteriors[-1].common, names=names)
 
 
-def disagreement(one: Shared, other: Shared) -> tuple[float, int]:
+def disagreement(estimate: Shared, other: Shared) -> tuple[float, int]:
     """Return the distance between two independent estimates of the derivatives.
 
     Returns
@@ -201,7 +201,7 @@ def disagreement(one: Shared, other: Shared) -> tuple[float, int]:
         Squared Mahalanobis distance over the derivatives known to both, and their number. The distance is
         χ²-distributed with that many degrees of freedom if only noise separates both estimates.
     """
-    return _distance(one.theta - other.theta, information_of(one.covariance + other.covariance))
+    return _distance(estimate.theta - other.theta, information_of(estimate.covariance + other.covariance))
 
 
 class Pooled(NamedTuple):
@@ -246,7 +246,7 @@ class _Summed:
     """Shape (n, d): products Iᵢdᵢ of the information and the estimate dᵢ."""
     own: FloatArray
     """Shape (n,): products dᵢᵀIᵢdᵢ of each estimate dᵢ and its information Iᵢ."""
-    known: FloatArray
+    counts: FloatArray
     """Shape (n,): number of known derivatives in each estimate."""
 
     @classmethod
@@ -260,8 +260,8 @@ class _Summed:
         centre = _finite(covariance_of(total)) @ weighted
         apart = theta - centre
         pull = np.einsum("nij,nj->ni", information, apart)
-        known = np.count_nonzero(np.diagonal(information, axis1=1, axis2=2) > 0.0, axis=1)
-        return cls(centre, information, pull, np.einsum("ni,ni->n", pull, apart), known)
+        counts = np.count_nonzero(np.diagonal(information, axis1=1, axis2=2) > 0.0, axis=1)
+        return cls(centre, information, pull, np.einsum("ni,ni->n", pull, apart), counts)
 
     def pooled(self) -> Pooled:
         return self._pooled(*(values.sum(axis=0, keepdims=True) for values in self._values()))[0]
@@ -276,17 +276,17 @@ class _Summed:
         return list(zip(before, after, strict=True))
 
     def _values(self) -> tuple[FloatArray, ...]:
-        return self.information, self.pull, self.own, self.known
+        return self.information, self.pull, self.own, self.counts
 
     def _pooled(
-        self, information: FloatArray, pull: FloatArray, own: FloatArray, known: FloatArray
+        self, information: FloatArray, pull: FloatArray, own: FloatArray, counts: FloatArray
     ) -> list[Pooled]:
         covariance = covariance_of(information)
-        told = np.isfinite(np.diagonal(covariance, axis1=1, axis2=2))
+        identified = np.isfinite(np.diagonal(covariance, axis1=1, axis2=2))
         moved = np.einsum("nij,nj->ni", _finite(covariance), pull)
-        theta = np.where(told, self.centre + moved, np.nan)
+        theta = np.where(identified, self.centre + moved, np.nan)
         chi2 = np.maximum(own - np.einsum("ni,ni->n", pull, moved), 0.0)
-        dof = known - told.sum(axis=1)
+        dof = counts - identified.sum(axis=1)
         return [
             Pooled(Shared(theta[k], covariance[k]), float(chi2[k]), int(dof[k])) for k in range(len(theta))
         ]

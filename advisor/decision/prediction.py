@@ -71,9 +71,9 @@ class Prediction:
             Shape (6, 6): covariance of ``DERIVATIVES``, infinite on the diagonal for an unknown derivative.
             The band of an output that depends on an unknown derivative is infinite.
         """
-        known = np.isfinite(np.diag(covariance))
-        inside = np.where(np.outer(known, known), covariance, 0.0)
-        return {name: _widest(slope, inside, known) for name, slope in self.slopes.items()}
+        finite = np.isfinite(np.diag(covariance))
+        inside = np.where(np.outer(finite, finite), covariance, 0.0)
+        return {name: _widest(slope, inside, finite) for name, slope in self.slopes.items()}
 
     @property
     def percent_by_derivative(self) -> FloatArray:
@@ -86,8 +86,8 @@ class Prediction:
         return np.asarray(np.max([np.max(np.abs(slope), axis=0) for slope in self.slopes.values()], axis=0))
 
 
-def _widest(slope: FloatArray, covariance: FloatArray, known: np.ndarray) -> float:
-    if not np.all(np.isfinite(slope)) or np.any(slope[:, ~known]):
+def _widest(slope: FloatArray, covariance: FloatArray, finite: np.ndarray) -> float:
+    if not np.all(np.isfinite(slope)) or np.any(slope[:, ~finite]):
         return float("inf")
     return float(np.max(half_widths(slope, covariance), initial=0.0))
 
@@ -105,9 +105,9 @@ def predict(
         Air speed of the derivatives, m/s. None for each manoeuvre's own air speed.
     """
     slopes: dict[str, list[FloatArray]] = {}
-    for one in flown[-MOST_INPUTS:]:
-        response = response_to(one, derivatives, airspeed_m_s)
-        for name in measured(one) if one.maneuver is not None else ():
+    for candidate in flown[-MOST_INPUTS:]:
+        response = response_to(candidate, derivatives, airspeed_m_s)
+        for name in measured(candidate) if candidate.maneuver is not None else ():
             slopes.setdefault(name, []).append(_relative(response, PREDICTED.index(name)))
     return Prediction({name: np.concatenate(parts) for name, parts in slopes.items()})
 

@@ -56,7 +56,7 @@ def with_one_remedy(reasons: Sequence[Reason]) -> tuple[Reason, ...]:
     The first reason is the cause. A remedy for its consequences may contradict the remedy of the cause. Bank
     asks for less stick, and a poor fit for more.
     """
-    return tuple(one if k == 0 else replace(one, text=one.fact) for k, one in enumerate(reasons))
+    return tuple(reason if k == 0 else replace(reason, text=reason.fact) for k, reason in enumerate(reasons))
 
 
 @dataclass(frozen=True, slots=True)

@@ -149,20 +149,20 @@ class Changes:
 
     def applied_to(self, last: SessionReport) -> SessionReport:
         """Return the newer report, from the earlier one and its changes."""
-        known = last.state.axes
+        before = last.state.axes
         axes = {
-            axis: sent.applied_to(known[axis]) if isinstance(sent, AxisChanges) else sent
+            axis: sent.applied_to(before[axis]) if isinstance(sent, AxisChanges) else sent
             for axis, sent in self.axes.items()
         }
-        state = replace(last.state, **self.state, axes={**known, **axes} if axes else known)
+        state = replace(last.state, **self.state, axes={**before, **axes} if axes else before)
         return replace(last, **self.report, state=state)
 
 
 def changes(last: SessionReport, report: SessionReport) -> Changes:
     """Return the changes that turn ``last`` into ``report``. The state's notices are in the report's log."""
-    known = last.state.axes
+    before = last.state.axes
     made = {
-        axis: AxisChanges.of(known[axis], now) if axis in known else now
+        axis: AxisChanges.of(before[axis], now) if axis in before else now
         for axis, now in report.state.axes.items()
     }
     return Changes(

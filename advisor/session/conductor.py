@@ -166,9 +166,9 @@ class Conductor(Conducting):
     def _jump(self, campaign: "Campaign", number: int) -> None:
         if self._player is None:
             return
-        known = next((j.maneuver for j in campaign.state.maneuvers if j.maneuver.number == number), None)
-        self._hurry_to(Goal(number, (*known.power_on, known.span.start_s) if known else None))
-        if known:
+        maneuver = next((j.maneuver for j in campaign.state.maneuvers if j.maneuver.number == number), None)
+        self._hurry_to(Goal(number, (*maneuver.power_on, maneuver.span.start_s) if maneuver else None))
+        if maneuver:
             self._player.rewind()
             self._rewound = True
 

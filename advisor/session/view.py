@@ -46,9 +46,9 @@ class View:
     def obstacles(self) -> tuple[Problem, ...]:
         """Reasons for which nothing can be judged: from the present data, and at the end from the complete
         stream."""
-        found = self.problems if self.health.condition == "ended" else self.state.no_data
+        problems = self.problems if self.health.condition == "ended" else self.state.no_data
         wrong = (f.problem for f in self.state.instruments if f.refuses)
-        return tuple({p.code: p for p in (*found, *wrong)}.values())
+        return tuple({p.code: p for p in (*problems, *wrong)}.values())
 
     @property
     def plan(self) -> CrewPlan | None:

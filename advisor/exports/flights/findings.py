@@ -65,8 +65,8 @@ def findings(state: CampaignState, record_of: Mapping[tuple[int, int], int]) -> 
 def _maneuvers(axis: _Axis, record_of: Mapping[tuple[int, int], int]) -> FlightTable:
     """Return a table with a row for each manoeuvre: verdict, reasons and fit."""
     judged = axis.judged
-    spans = [one.maneuver.span for one in judged]
-    verdicts = [one.verdict for one in judged]
+    spans = [m.maneuver.span for m in judged]
+    verdicts = [m.verdict for m in judged]
     columns = [
         Column("maneuver", counts([m.maneuver.number for m in judged]), "", "number"),
         Column(
@@ -110,7 +110,7 @@ def _maneuvers(axis: _Axis, record_of: Mapping[tuple[int, int], int]) -> FlightT
 
 def _estimates(axis: _Axis) -> FlightTable:
     """Return a table with a row for each parameter of each estimate, and its row of the covariance."""
-    estimates = [(one.maneuver.number, e) for one in axis.judged if (e := _estimate(one))]
+    estimates = [(m.maneuver.number, e) for m in axis.judged if (e := _estimate(m))]
     if axis.model is not None:
         estimates.append((JOINT, axis.model))
     rows = [
@@ -119,7 +119,7 @@ def _estimates(axis: _Axis) -> FlightTable:
         for name in (*axis.units, *(instrument.name for instrument in e.instruments))
     ]
 
-    def told(values: str, *of: int) -> NDArray[np.float64]:
+    def by_row(values: str, *of: int) -> NDArray[np.float64]:
         """Return an attribute of the estimates by row, shape (n,); NaN for an unidentifiable parameter."""
         return numbers([_told(e, name, values, of) for _, e, name in rows])
 
@@ -131,15 +131,15 @@ def _estimates(axis: _Axis) -> FlightTable:
         Column("maneuver", counts([number for number, _, _ in rows]), "", which),
         Column("parameter", texts([name for _, _, name in rows]), "", "name of the parameter"),
         Column("unit", units, "", "SI unit of the value"),
-        Column("value", told("theta"), _BY_ROW, "estimate"),
-        Column("std", told("std"), _BY_ROW, "standard deviation, corrected for coloured residuals"),
-        Column("std_cr", told("std_cr"), _BY_ROW, "plain Cramér-Rao bound"),
+        Column("value", by_row("theta"), _BY_ROW, "estimate"),
+        Column("std", by_row("std"), _BY_ROW, "standard deviation, corrected for coloured residuals"),
+        Column("std_cr", by_row("std_cr"), _BY_ROW, "plain Cramér-Rao bound"),
         Column("reason", reasons, "", "reason for a missing value"),
         Column("airspeed_m_s", speeds, "m/s", "air speed at which the derivatives are given"),
     ]
     for k, (name, its) in enumerate(axis.units.items()):
         unit = f"{_BY_ROW} times {its}"
-        columns.append(Column(f"covariance_{name}", told("covariance", k), unit, f"covariance with {name}"))
+        columns.append(Column(f"covariance_{name}", by_row("covariance", k), unit, f"covariance with {name}"))
     about = "A row is one parameter of one estimate: the derivatives, then the instruments."
     return FlightTable(f"{axis.prefix}estimates", about, tuple(columns))
 
@@ -149,15 +149,15 @@ def _told(e: Estimate, name: str, values: str, of: tuple[int, ...]) -> float | N
     if name in e.names:
         return None if name in e.not_identifiable else getattr(e, values)[(e.names.index(name), *of)]
     instrument = e.instrument(name)
-    told = {"theta": "value", "std": "std"}.get(values)
-    return None if instrument is None or told is None else getattr(instrument, told)
+    attribute = {"theta": "value", "std": "std"}.get(values)
+    return None if instrument is None or attribute is None else getattr(instrument, attribute)
 
 
 def _residuals(axis: _Axis, record_of: Mapping[tuple[int, int], int]) -> Iterator[FlightTable]:
     """Yield a table for each output: measured, fitted and residual values of accepted manoeuvres, at the
     output's stamps.
     """
-    accepted = [(one.maneuver, e) for one in axis.judged if one.verdict.accepted and (e := _estimate(one))]
+    accepted = [(m.maneuver, e) for m in axis.judged if m.verdict.accepted and (e := _estimate(m))]
     for output in axis.outputs:
         fits = [(maneuver, e.fits[0][output]) for maneuver, e in accepted if output in e.fits[0]]
         if not fits:

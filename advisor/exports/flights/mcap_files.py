@@ -39,7 +39,7 @@ def _write(
     writer.add_metadata("advisor", {"about": json.dumps(data.about, ensure_ascii=False)})
     streams = [_messages(t, _register(writer, t), t[_TIMES.get(t.name, "t_boot_s")]) for t in tables]
     ends = [_messages(t, _register(writer, t), np.full(len(t), end_s)) for t in at_end]
-    for sequence, (at_ns, topic, message) in enumerate(merge(*streams, *ends, key=lambda one: one[0])):
+    for sequence, (at_ns, topic, message) in enumerate(merge(*streams, *ends, key=lambda entry: entry[0])):
         text = json.dumps(message, ensure_ascii=False, allow_nan=False).encode()
         writer.add_message(topic, log_time=at_ns, publish_time=at_ns, sequence=sequence, data=text)
     writer.finish()  # type: ignore[no-untyped-call]

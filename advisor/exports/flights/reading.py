@@ -18,9 +18,7 @@ from advisor.process.arrays import FloatArray
 
 def dataset(flights: WholeFlights) -> Dataset:
     """Return all data of an export as tables."""
-    record_of = {
-        (flight, one.boot): number for number, (flight, one) in enumerate(flights.power_ons, start=1)
-    }
+    record_of = {(flight, p.boot): number for number, (flight, p) in enumerate(flights.power_ons, start=1)}
     state = flights.state
     sideways = state.lateral is not None and state.lateral.maneuvers and not state.maneuvers
     judged = state.lateral if sideways and state.lateral is not None else state
@@ -32,7 +30,7 @@ def dataset(flights: WholeFlights) -> Dataset:
         "decision": judged.flight_test.sentence,
         "notes": flights.notes,
     }
-    recordings = tuple(_recording(k, one) for k, (_, one) in enumerate(flights.power_ons, start=1))
+    recordings = tuple(_recording(k, power_on) for k, (_, power_on) in enumerate(flights.power_ons, start=1))
     return Dataset(recordings, tables, about)
 
 
@@ -55,9 +53,9 @@ def _recording(number: int, power_on: PowerOn) -> Recording:
 
 def _channels(flights: WholeFlights) -> FlightTable:
     rows = [
-        (number, flights.logs[flight], one.boot, channel)
-        for number, (flight, one) in enumerate(flights.power_ons, start=1)
-        for channel in one.channels.values()
+        (number, flights.logs[flight], power_on.boot, channel)
+        for number, (flight, power_on) in enumerate(flights.power_ons, start=1)
+        for channel in power_on.channels.values()
     ]
     channels = [channel for *_, channel in rows]
     columns = (

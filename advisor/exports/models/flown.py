@@ -153,7 +153,7 @@ def _pitch(state: CampaignState, aircraft: Aircraft) -> Improvement | None:
     if estimate is None or estimate.airspeed_m_s is None or estimate.not_identifiable:
         return None
     values = zip(estimate.names, estimate.theta.tolist(), estimate.std.tolist(), strict=True)
-    joined = [one.maneuver for one in state.maneuvers if one.maneuver.number in state.estimate_from]
+    joined = [m.maneuver for m in state.maneuvers if m.maneuver.number in state.estimate_from]
     return Improvement(
         name=aircraft.name,
         model={name: Value(value, std) for name, value, std in values},
@@ -176,17 +176,17 @@ def side_flown(lateral: LateralState | None, aircraft: Aircraft) -> SideModel | 
         return None
     if WITHOUT_FORCE in model.not_identifiable.values():
         return None
-    joined = [one.maneuver for one in lateral.maneuvers if one.maneuver.number in lateral.estimate_from]
+    joined = [m.maneuver for m in lateral.maneuvers if m.maneuver.number in lateral.estimate_from]
     air = air_flown(joined, aircraft.reference.air_temperature_c)
     return side_of(model, trim_of(joined, model.airspeed_m_s), air, aircraft)
 
 
 def side_of(estimate: LateralEstimate, trim: Trim, air: AirData, aircraft: Aircraft) -> SideModel:
     """Return the roll and yaw model of an estimate, with the air speed and servos from its fit."""
-    told = zip(SIDE_PARAMETERS, estimate.theta.tolist(), estimate.std.tolist(), strict=True)
+    estimated = zip(SIDE_PARAMETERS, estimate.theta.tolist(), estimate.std.tolist(), strict=True)
     excess, _ = estimate.nuisances.get("airspeed_excess", (0.0, 0.0))
     return SideModel(
-        {name: Value(value, std) for name, value, std in told if name not in estimate.not_identifiable},
+        {name: Value(value, std) for name, value, std in estimated if name not in estimate.not_identifiable},
         estimate.not_identifiable,
         trim,
         replace(air, excess=excess),

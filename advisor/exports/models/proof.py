@@ -93,7 +93,7 @@ class Proof:
         """Sentence about the withdrawn parts; empty if all are kept."""
         if self.gap_with_them is None:
             return ""
-        parts = [spelled(one) for one in self.taken_back]
+        parts = [spelled(part) for part in self.taken_back]
         return taken_back_said(parts, unused(self.maneuvers), self.gap_with_them, self.after)
 
 
@@ -106,7 +106,7 @@ def proved(axis: ImprovedAxis) -> Proof:
     taken: tuple[str, ...] = ()
     if every.gap > before.gap:
         tried = [(axis.flown(parts), parts) for parts in axis.fewer]
-        after, taken = min((*tried, (before, axis.parts)), key=lambda one: one[0].gap)
+        after, taken = min((*tried, (before, axis.parts)), key=lambda trial: trial[0].gap)
     second, sentence = after.answer()
     was, now = before.by_maneuver, after.by_maneuver
     return Proof(
@@ -157,8 +157,8 @@ def lines_of(proof: Proof) -> Iterator[str]:
         yield f"  Without them the flight says: {proof.alone}"
     left = "nothing above the noise" if proof.second == "none" else proof.sentence
     yield f"  asked again, the improved simulator lacks: {left}"
-    for one in proof.not_carried:
-        yield f"  the simulator does not take {one}"
+    for part in proof.not_carried:
+        yield f"  the simulator does not take {part}"
 
 
 def _gaps(before: float, after: float) -> str:

@@ -115,9 +115,9 @@ def write_models(
     except ConfigurationError as error:
         yield str(error)
         return
-    for one in outcomes:
-        if one.problem or one.left_out:
-            yield one.problem or f"{one.order.file.name} does not carry: {', '.join(one.left_out)}."
+    for each in outcomes:
+        if each.problem or each.left_out:
+            yield (each.problem or f"{each.order.file.name} does not carry: {', '.join(each.left_out)}.")
 
 
 def _orders(names: Sequence[str], folder: Path) -> Iterator[ExportOrder]:

@@ -94,16 +94,14 @@ def parameters_text(model: FlownModel) -> Exported:
         f"{model.name}: servos by the inflight advisor, for ArduPilot's simulation.",
         "ArduPilot's plane reads aileron, elevator and rudder from outputs 1, 2 and 4.",
         f"Lag, delay and rate are the {control}'s: ArduPilot's model is the same for every servo.",
-        *(f"{name}: {', '.join(one.lines()) or 'follows at once'}." for name, one in servos.items()),
+        *(f"{name}: {', '.join(s.lines()) or 'follows at once'}." for name, s in servos.items()),
     ]
     lines = "".join(
         f"{name} {value:.6g}\n" for name, value in (*_outputs(model), *_motion(servo, model, control))
     )
     slack = {"actuator backlash": servo.play_rad, "actuator deadband": servo.deadband_rad}
     left = [name for name, size in slack.items() if size]
-    left += [
-        f"{name}: {', '.join(one.lines())}" for name, one in servos.items() if one != servo and one.lines()
-    ]
+    left += [f"{name}: {', '.join(s.lines())}" for name, s in servos.items() if s != servo and s.lines()]
     effects = effects_beside(model.pitch) if model.pitch is not None else ()
     return Exported(commented(head, "#") + lines, (*left, *effects))
 
@@ -116,14 +114,14 @@ def _servos(model: FlownModel) -> dict[str, ExportedServo]:
 
 def _outputs(model: FlownModel) -> Iterator[tuple[str, float]]:
     """Yield function, direction and end points of each output with a calibration."""
-    known = {n: v.value for n, v in (model.pitch.model if model.pitch is not None else {}).items()}
+    values = {n: v.value for n, v in (model.pitch.model if model.pitch is not None else {}).items()}
     if model.side is not None:
-        known |= {n: v.value for n, v in model.side.values.items()}
+        values |= {n: v.value for n, v in model.side.values.items()}
     for control in calibrated(model.aircraft):
         travel, output = travel_of(model.aircraft, control), OUTPUTS[control]
         yield f"SERVO{output}_FUNCTION", FUNCTIONS[control]
         # ArduPilot lengthens the pulse for nose up, roll to the right and nose right, unless it is reversed.
-        power = known.get(_RIGHT[control], -1.0) * travel.per_half_rad
+        power = values.get(_RIGHT[control], -1.0) * travel.per_half_rad
         yield f"SERVO{output}_REVERSED", float(power < 0.0)
         yield f"SERVO{output}_MIN", travel.low_us
         yield f"SERVO{output}_TRIM", round(travel.trim_us)

@@ -74,23 +74,23 @@ def plane_text(model: FlownModel, file_name: str) -> Exported:
     aircraft = model.aircraft
     parts, left = [], []
     for axis, missing in lacking(aircraft).items():
-        found = model.pitch if axis == "pitch" else model.side
-        if found is None:
+        flown = model.pitch if axis == "pitch" else model.side
+        if flown is None:
             left.append(f"{AXES[axis]}, which no flight and no file gives")
         elif missing:
             left.append(f"{AXES[axis]}, for want of {', '.join(missing)} in the aircraft file")
         else:
             parts.append(
-                _pitch(found, aircraft) if isinstance(found, Improvement) else _side(found, aircraft)
+                _pitch(flown, aircraft) if isinstance(flown, Improvement) else _side(flown, aircraft)
             )
     if not parts:
         raise ConfigurationError(f"--export ardupilot: {file_name} was not written: {'; '.join(left)}.")
     keys: Keys = {key: value for part in parts for key, value in part.keys.items()}
     keys["CGOffset"] = [0.0, 0.0, 0.0]
     rounded = {k: float(f"{v:.6g}") if isinstance(v, float) else v for k, v in keys.items()}
-    left += [one for part in parts for one in part.left]
+    left += [line for part in parts for line in part.left]
     notes = [note for part in parts for note in part.notes]
-    head = [*_head(model.name, file_name), *notes, *(f"Not in this file: {one}." for one in left)]
+    head = [*_head(model.name, file_name), *notes, *(f"Not in this file: {line}." for line in left)]
     return Exported(_commented(head) + json.dumps(rounded, indent=1) + "\n", tuple(left))
 
 
@@ -109,10 +109,10 @@ def _commented(head: list[str]) -> str:
 
 def _pitch(pitch: Improvement, aircraft: Aircraft) -> Part:
     reference = pitch.reference
-    found = pitch.coefficients()
+    coefficients = pitch.coefficients()
     travel = travel_of(aircraft, "elevator")
     neutral, full = travel.neutral_rad, travel.per_half_rad
-    c = {name: one.value for name, one in found.items()}
+    c = {name: coefficient.value for name, coefficient in coefficients.items()}
     mass, inertia = reference.mass_kg or math.nan, reference.iyy_kg_m2 or math.nan
     lift, moment = MASS_KG / mass, 1.0 / inertia
     keys: Keys = {
@@ -171,15 +171,15 @@ def _side(side: SideModel, aircraft: Aircraft) -> Part:
 def lacking(aircraft: Aircraft) -> Mapping[str, list[str]]:
     """Return the missing keys of the aircraft file for each axis' coefficients."""
     reference: Reference = aircraft.reference
-    known = calibrated(aircraft)
+    measured = calibrated(aircraft)
     return {
         "pitch": [
             *missing_reference(reference, REFERENCE_KEYS),
-            *(["elevator.calibration"] if "elevator" not in known else []),
+            *(["elevator.calibration"] if "elevator" not in measured else []),
         ],
         "lateral": [
             *missing_reference(reference, SIDE_KEYS),
-            *(f"{name}.calibration" for name in ("aileron", "rudder") if name not in known),
+            *(f"{name}.calibration" for name in ("aileron", "rudder") if name not in measured),
         ],
     }
 

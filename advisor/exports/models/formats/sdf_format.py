@@ -75,13 +75,13 @@ def plugins_text(model: FlownModel) -> Exported:
         left.append(_why_not("roll and yaw", model.side is not None, missing["lateral"]))
     if not made:
         raise ConfigurationError(f"--export sdf: nothing can be written: {'; '.join(left)}.")
-    left += [x for one in made for x in one.left_out]
-    return Exported("".join(one.text for one in made), tuple(left))
+    left += [x for part in made for x in part.left_out]
+    return Exported("".join(part.text for part in made), tuple(left))
 
 
-def _why_not(axis: str, known: bool, missing: Sequence[str]) -> str:
+def _why_not(axis: str, is_known: bool, missing: Sequence[str]) -> str:
     return f"{axis}, " + (
-        f"for want of reference {', '.join(missing)}" if known else "which no flight and no file gives"
+        f"for want of reference {', '.join(missing)}" if is_known else "which no flight and no file gives"
     )
 
 
@@ -101,7 +101,7 @@ def block_text(improvement: Improvement) -> Exported:
     ConfigurationError
         Reference data are missing, or no tail behind the centre of gravity gives these derivatives.
     """
-    c = {name: one.value for name, one in improvement.coefficients().items()}
+    c = {name: coefficient.value for name, coefficient in improvement.coefficients().items()}
     reference = improvement.reference
     chord, area = reference.chord_m or 0.0, reference.wing_area_m2 or 0.0
     if not (c["C_m_alpha"] < 0.0 and c["C_m_q"] < 0.0):

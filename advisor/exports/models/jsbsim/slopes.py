@@ -226,9 +226,9 @@ def _finds_its_throttle(fdm: Any) -> bool:
 
 def answer() -> None:
     """Read one request as JSON from stdin, and answer with one line of JSON, the last on stdout."""
-    told = json.load(sys.stdin)
-    foreign = told.pop("foreign")
-    model, *places = (told.pop(key) for key in ("model", "aircraft", "engine", "systems"))
+    request = json.load(sys.stdin)
+    foreign = request.pop("foreign")
+    model, *places = (request.pop(key) for key in ("model", "aircraft", "engine", "systems"))
     os.environ["JSBSIM_DEBUG"] = "0"
     import jsbsim
 
@@ -238,7 +238,7 @@ def answer() -> None:
         fdm[name] = 0.0
     aircraft, engine, systems = places
     fdm.load_model_with_paths(model, aircraft, engine, systems, True)
-    asked = Request(**told)
+    asked = Request(**request)
     slopes = side_measured(fdm, asked) if asked.sideways else measured(fdm, asked)
     print("\n" + json.dumps(asdict(slopes), allow_nan=False))
 

@@ -77,9 +77,9 @@ def corrected(
         The content is no aircraft (see ``parse``), or the model's elevator position is no angle.
     """
     root = parse(content, name)
-    for one in added:
-        axis = next(a for a in root.iterfind("aerodynamics/axis") if a.get("name") == one.axis)
-        axis.append(_function(one))
+    for function in added:
+        axis = next(a for a in root.iterfind("aerodynamics/axis") if a.get("name") == function.axis)
+        axis.append(_function(function))
     if not servo.is_quick:
         _insert(servo, root)
     prolog = content.split(b"<fdm_config")[0].decode("utf-8", "replace")

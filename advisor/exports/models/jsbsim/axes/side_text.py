@@ -83,13 +83,13 @@ def _targets(side: SideModel, own: SideSlopes) -> dict[str, float]:
 def _loads(missing: Mapping[str, float], own: SideSlopes) -> dict[str, float]:
     """Return the value of each derivative's additional function, lbs or lbs·ft."""
     moments = np.linalg.inv(np.array(own.turning))
-    found: dict[str, float] = {}
+    loads: dict[str, float] = {}
     for variable in VARIABLES:
         roll, yaw = moments @ [missing[f"L_{variable}"], missing[f"N_{variable}"]]
         needed = {"Y": own.momentum * missing[f"Y_{variable}"], "L": roll, "N": yaw}
         scale = own.pressure_psf * (own.span_time_s if variable in RATES else 1.0)
-        found |= {f"{y}_{variable}": float(size / scale) for y, size in needed.items()}
-    return found
+        loads |= {f"{y}_{variable}": float(size / scale) for y, size in needed.items()}
+    return loads
 
 
 def _functions(sizes: Mapping[str, float]) -> list[AddedFunction]:
