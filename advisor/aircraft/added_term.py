@@ -58,8 +58,8 @@ class AddedTerm:
     @property
     def signals(self) -> tuple[str, ...]:
         """Names of ``SIGNALS`` in the expression, each once."""
-        found = (node.id for node in ast.walk(_tree(self.expression)) if isinstance(node, ast.Name))
-        return tuple(dict.fromkeys(name for name in found if name in SIGNALS))
+        names = (node.id for node in ast.walk(_tree(self.expression)) if isinstance(node, ast.Name))
+        return tuple(dict.fromkeys(name for name in names if name in SIGNALS))
 
     def factor(self, values: Mapping[str, Any], functions: Mapping[str, Callable[[Any], Any]]) -> Any:
         """Return the value of the expression.

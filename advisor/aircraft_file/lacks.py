@@ -113,7 +113,7 @@ def _contradictions(aircraft: Aircraft, facts: LogFacts) -> Iterator[Lack]:
 
 def _beyond_calibration(aircraft: Aircraft, facts: LogFacts) -> Iterator[Lack]:
     """Yield the outputs whose pulses exceed their calibration, beyond which the deflection is constant."""
-    calibrations = {one.output: one.calibration for one in aircraft.elevator.outputs}
+    calibrations = {output.output: output.calibration for output in aircraft.elevator.outputs}
     if aircraft.elevator.calibration and len(facts.outputs) == 1:
         calibrations = {facts.outputs[0]: aircraft.elevator.calibration}
     for output, pairs in calibrations.items():

@@ -147,7 +147,7 @@ def facts_of(
         maneuvers_m_s=tuple(_mean_speed(e.maneuver) for e in events if isinstance(e, ManeuverFlown)),
         sides_unknown=stream.sides_unknown,
         sides={name: surface for name, surface in sides.items() if surface is not None},
-        side_guesses=_free_guesses(stream, {name for name, one in sides.items() if one is not None}),
+        side_guesses=_free_guesses(stream, {name for name, surface in sides.items() if surface is not None}),
     )
 
 

@@ -130,11 +130,11 @@ def _meant(path: str) -> str:
     section, _, key = path.rpartition(".")
     by_path = {re.sub(r"\[\]", "", at): kind for at, kind in sections_of(Aircraft)}
     here = by_path.get(re.sub(r"\[\d+\]", "", section))
-    mine = [one.name for one in fields(here)] if here is not None else []
+    mine = [field.name for field in fields(here)] if here is not None else []
     elsewhere = {
-        one.name: f"{at}.{one.name}" if at else one.name
+        field.name: f"{at}.{field.name}" if at else field.name
         for at, kind in reversed(by_path.items())
-        for one in fields(kind)
+        for field in fields(kind)
     }
     begun = [name for name in mine if name.startswith(f"{key}_")]
     near = [*begun, *get_close_matches(key, mine, 1)]
@@ -204,10 +204,10 @@ def _out_of_bounds(aircraft: Aircraft) -> Iterator[str]:
             yield f"{key.path}: {mistake}"
 
 
-def _source_mistakes(path: str, source: str, known: Sequence[str]) -> Iterator[str]:
+def _source_mistakes(path: str, source: str, sources: Sequence[str]) -> Iterator[str]:
     named = source.startswith("named_value:") and 1 <= len(source.split(":", 1)[1]) <= 10
-    if source not in known and not named:
-        yield f"{path}: {source!r} is none of {', '.join(known)}, named_value:NAME"
+    if source not in sources and not named:
+        yield f"{path}: {source!r} is none of {', '.join(sources)}, named_value:NAME"
 
 
 def _elevator_mistakes(elevator: Elevator) -> Iterator[str]:
@@ -222,16 +222,16 @@ def _elevator_mistakes(elevator: Elevator) -> Iterator[str]:
     if len(elevator.outputs) > _OUTPUTS:
         yield f"elevator.outputs: lists {len(elevator.outputs)} outputs; there are {_OUTPUTS}"
         return
-    for i, one in enumerate(elevator.outputs):
+    for i, output in enumerate(elevator.outputs):
         path = f"elevator.outputs[{i}]"
-        if not 1 <= one.output <= _OUTPUTS:
-            yield f"{path}.output: {one.output} is not a servo output 1..{_OUTPUTS}"
-        if one.output in [other.output for other in elevator.outputs[:i]]:
-            yield f"{path}.output: {one.output} is listed twice"
-        if one.weight <= 0.0:
-            yield f"{path}.weight: must be above 0, is {one.weight}"
-        if one.calibration is not None:
-            yield from _calibration_mistakes(f"{path}.calibration", one.calibration)
+        if not 1 <= output.output <= _OUTPUTS:
+            yield f"{path}.output: {output.output} is not a servo output 1..{_OUTPUTS}"
+        if output.output in [other.output for other in elevator.outputs[:i]]:
+            yield f"{path}.output: {output.output} is listed twice"
+        if output.weight <= 0.0:
+            yield f"{path}.weight: must be above 0, is {output.weight}"
+        if output.calibration is not None:
+            yield from _calibration_mistakes(f"{path}.calibration", output.calibration)
         elif elevator.is_calibrated:
             yield f"{path}.calibration: give one for every output, or for none"
 
@@ -267,11 +267,11 @@ def _mistakes_in_markers(markers: Markers) -> Iterator[str]:
 
 
 _FMU_VARIABLES = tuple(
-    one.name for one in fields(FmuVariables) if one.name not in ("units", "scale", "step_s", "trim")
+    field.name for field in fields(FmuVariables) if field.name not in ("units", "scale", "step_s", "trim")
 )
 
 
-_COLUMNS = tuple(one.name for one in fields(TableColumns) if one.name not in ("units", "scale"))
+_COLUMNS = tuple(field.name for field in fields(TableColumns) if field.name not in ("units", "scale"))
 
 
 def _mistakes_in_scale(path: str, scale: Mapping[str, float], names: Sequence[str]) -> Iterator[str]:

@@ -137,7 +137,7 @@ def _oldest_first(logs: Sequence[Path]) -> list[Path]:
     begun_s = [began_s(log) for log in logs]
     if not all(at_s >= SINCE_1970_S for at_s in begun_s):
         return list(logs)
-    return [log for _, log in sorted(zip(begun_s, logs, strict=True), key=lambda one: one[0])]
+    return [log for _, log in sorted(zip(begun_s, logs, strict=True), key=lambda dated: dated[0])]
 
 
 def began_s(log: Path) -> float:

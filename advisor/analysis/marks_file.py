@@ -137,10 +137,10 @@ def _remark(path: Path, where: str, entry: dict[str, Any], key: str) -> Remark:
     return Remark(at_s, text, _power_on(path, where, entry))
 
 
-def _refuse_unknown(path: Path, where: str, entry: dict[str, Any], known: Sequence[str]) -> None:
+def _refuse_unknown(path: Path, where: str, entry: dict[str, Any], keys: Sequence[str]) -> None:
     for key in entry:
-        if key not in known:
-            raise _mistake(path, f"{where}.{key}: unknown key, the keys are {', '.join(known)}")
+        if key not in keys:
+            raise _mistake(path, f"{where}.{key}: unknown key, the keys are {', '.join(keys)}")
 
 
 def _number(path: Path, where: str, entry: dict[str, Any], key: str) -> float:

@@ -55,21 +55,21 @@ def source_of_log(log: Path, aircraft: Aircraft, target_system: int | None = Non
 def _campaign(log: Path, aircraft: Aircraft, target_system: int | None) -> CampaignState:
     series = LogSeries([log])
     campaign = partial(Campaign, aircraft, target_system, names=series.names, lateral=True)
-    flown = series.fed_to(campaign, lambda one, columns: one.feed(columns))
+    flown = series.fed_to(campaign, lambda running, columns: running.feed(columns))
     flown.finish()
     return flown.state
 
 
 def _derivatives(state: CampaignState) -> dict[str, float]:
     estimates = [state.model, state.lateral.model if state.lateral else None]
-    return {name: one.value(name) for one in estimates if one is not None for name in one.names}
+    return {name: e.value(name) for e in estimates if e is not None for name in e.names}
 
 
 def _flown(state: CampaignState) -> dict[Control, float]:
     """Return the largest deflection from trim of each control in accepted manoeuvres, rad."""
     judged = (*state.maneuvers, *(state.lateral.maneuvers if state.lateral else ()))
-    accepted = [one for one in judged if one.verdict.accepted]
-    largest = {control: max((_moved(one, control) for one in accepted), default=0.0) for control in CONTROLS}
+    accepted = [m for m in judged if m.verdict.accepted]
+    largest = {control: max((_moved(m, control) for m in accepted), default=0.0) for control in CONTROLS}
     return {control: moved for control, moved in largest.items() if moved > 0.0}
 
 
@@ -98,7 +98,7 @@ def _controls(facts: LogFacts) -> tuple[Control, ...]:
 def _limits(facts: LogFacts) -> dict[str, float]:
     """Return SERVOn_MIN, TRIM, MAX and REVERSED of the controls' outputs, as far as the log states them."""
     surfaces = [facts.elevator, *facts.sides.values()]
-    outputs = sorted({n for one in surfaces if isinstance(one, Surface) for n in one.outputs})
+    outputs = sorted({n for surface in surfaces if isinstance(surface, Surface) for n in surface.outputs})
     stated: dict[str, float] = {}
     for n in outputs:
         if n in facts.wiring.scales and n not in facts.wiring.doubts:

@@ -118,9 +118,9 @@ class Vibration:
         if grown:
             yield f"Accelerometers clip ({', '.join(grown)} samples): damp the vibration of their mount."
         lines = [(s, s.line_hz(1.0 / unit_s)) for s in self.spectra] if unit_s else []
-        told = [f"{s.name}: peak at {hz:.2f} Hz" for s, hz in lines if hz is not None]
-        if told:
-            yield f"A vibration line lies in the frequency band of the test ({'; '.join(told)})."
+        peaks = [f"{s.name}: peak at {hz:.2f} Hz" for s, hz in lines if hz is not None]
+        if peaks:
+            yield f"A vibration line lies in the frequency band of the test ({'; '.join(peaks)})."
 
 
 def vibration_of(log: Path, columns: TableColumns | None = None) -> Vibration:

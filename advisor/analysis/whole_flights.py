@@ -121,7 +121,7 @@ def read_whole(
         raise UnusableInputError.of([problem for several in left_out.values() for problem in several])
     for stream in streams.values():
         stream.finish()
-    power_ons = [(flight, one) for flight, stream in sorted(streams.items()) for one in stream.power_ons]
+    power_ons = [(flight, boot) for flight, stream in sorted(streams.items()) for boot in stream.power_ons]
     return WholeFlights(
         logs=tuple(series.logs),
         names=tuple(series.names),
@@ -138,21 +138,19 @@ def left_out_of(axis: Axis, state: CampaignState) -> dict[int, tuple[Problem, ..
 
     A flight with an accepted lateral manoeuvre does not need the elevator's messages.
     """
-    left_out = {one.flight: one.problems for one in state.flights if one.problems}
+    left_out = {log.flight: log.problems for log in state.flights if log.problems}
     if state.lateral is None:
         return left_out
-    told = {
-        one.maneuver.flight for one in state.lateral.maneuvers if axis == "lateral" or one.verdict.accepted
-    }
+    tested = {m.maneuver.flight for m in state.lateral.maneuvers if axis == "lateral" or m.verdict.accepted}
     elsewhere = {
         flight: problems
         for flight, problems in left_out.items()
         if not all(p.code in OF_ELEVATOR for p in problems)
     }
     if axis == "lateral":
-        silent = [one for one in state.flights if one.flight not in told and one.flight not in elsewhere]
-        return elsewhere | {one.flight: (no_lateral(one),) for one in silent}
-    return {flight: problems for flight, problems in left_out.items() if flight not in told} | elsewhere
+        silent = [log for log in state.flights if log.flight not in tested and log.flight not in elsewhere]
+        return elsewhere | {log.flight: (no_lateral(log),) for log in silent}
+    return {flight: problems for flight, problems in left_out.items() if flight not in tested} | elsewhere
 
 
 def holds_no_test(left_out: Mapping[int, Sequence[Problem]]) -> bool:

@@ -62,9 +62,9 @@ def written(document: Any, path: str = "", without: Sequence[str] = ()) -> str:
     if not path:
         whole = _on_request(whole, without)
     budget = MOST_BYTES
-    while not fits(told := _json(_shortened(whole, budget, path))):
+    while not fits(text := _json(_shortened(whole, budget, path))):
         budget = budget * 9 // 10
-    return told
+    return text
 
 
 def _on_request(value: Any, without: Sequence[str], within: str = "") -> Any:

@@ -53,18 +53,18 @@ class Folders:
         inside = [path for path in candidates if any(path.is_relative_to(root) for root in self.roots)]
         if not inside:
             raise RefusedError(f"{name} lies outside the folders of this server: {self.listed}.")
-        found = next((path for path in inside if path.is_file()), None)
-        if found is None:
+        file = next((path for path in inside if path.is_file()), None)
+        if file is None:
             other = next((path for path in inside if path.exists()), None)
             if other is None:
                 raise RefusedError(f"There is no file {name} in {self.listed}.")
             kind = "a folder: name a log in it" if other.is_dir() else "a pipe, socket or device, not a file"
             raise RefusedError(f"{name} is {kind}.")
-        size = found.stat().st_size
+        size = file.stat().st_size
         if size > self.most_bytes:
             most = _amount(self.most_bytes)
             raise RefusedError(f"{name} has {_amount(size)}, and this server reads at most {most}.")
-        return found
+        return file
 
     @property
     def listed(self) -> str:
@@ -74,8 +74,8 @@ class Folders:
     def logs(self) -> Iterator[Path]:
         """Yield the files in the folders that look like logs, in the order of their names."""
         for root in self.roots:
-            found = (path for path in root.rglob("*") if path.suffix.lower() in LOGS and path.is_file())
-            yield from sorted(path for path in found if path.resolve().is_relative_to(root))
+            files = (path for path in root.rglob("*") if path.suffix.lower() in LOGS and path.is_file())
+            yield from sorted(path for path in files if path.resolve().is_relative_to(root))
 
 
 def _amount(count: int) -> str:

@@ -42,10 +42,10 @@ def server_of(folders: Folders, calls: Calls) -> MCPServer[Any]:
     """Return the server with its tools."""
     logs = [str(path) for path in folders.logs()]
     named = ", ".join(logs[:_LISTED]) + (f" and {len(logs) - _LISTED} more" if len(logs) > _LISTED else "")
-    told = _INSTRUCTIONS.format(folders=folders.listed, logs=named or "none yet")
+    instructions = _INSTRUCTIONS.format(folders=folders.listed, logs=named or "none yet")
     # The library logs the answer that a client no longer reads; refusals and faults are answers.
     server: MCPServer[Any] = MCPServer(
-        "inflight-advisor", instructions=told, version=__version__, log_level="CRITICAL"
+        "inflight-advisor", instructions=instructions, version=__version__, log_level="CRITICAL"
     )
 
     async def doctor(
@@ -78,11 +78,11 @@ def server_of(folders: Folders, calls: Calls) -> MCPServer[Any]:
             words = ["report", *_files(folders, log, logs), *_aircraft(folders, aircraft), "-o", str(page)]
             await calls.done(words)
             text = page.read_text(encoding="utf-8")
-        told, lines = text, text.splitlines()
-        while not fits(told):
+        answer, lines = text, text.splitlines()
+        while not fits(answer):
             lines = lines[:-1]
-            told = "\n".join([*lines, "", "Cut here: analyze has the rest."])
-        return told
+            answer = "\n".join([*lines, "", "Cut here: analyze has the rest."])
+        return answer
 
     for tool in (doctor, analyze, gap, report):
         server.add_tool(_answering(tool), name=tool.__name__, annotations=_READS, structured_output=False)

@@ -69,7 +69,7 @@ def _trends(
     estimates = [estimate for _, estimate in flights]
     posteriors = posteriors_at_one_speed(estimates)
     speed = common_airspeed(estimates)
-    moved = {one.parameter for one in change.change.moved} if change else set()
+    moved = {part.parameter for part in change.change.moved} if change else set()
     pictures = []
     for k in DERIVATIVES:
         points = [
@@ -134,14 +134,14 @@ def _row(number: int, flight: Analyzed, log: str, aircraft: str, report: str | N
     shown = [_shown(cell) for cell in cells]
     if report is not None:
         shown[1] = f'<a href="{quote(report)}">{shown[1]}</a>'
-    told = "".join(f'<td data-label="{name}">{cell}</td>' for name, cell in zip(_COLUMNS, shown, strict=True))
-    return f"<tr>{told}</tr>"
+    row = "".join(f'<td data-label="{name}">{cell}</td>' for name, cell in zip(_COLUMNS, shown, strict=True))
+    return f"<tr>{row}</tr>"
 
 
 def _accepted(flight: Analyzed) -> str:
     """Return the numbers of accepted manoeuvres of the elevator and of aileron and rudder."""
     pitch, lateral = (
-        [one["verdict"] for one in several]
+        [m["verdict"] for m in several]
         for several in (flight.document["maneuvers"], flight.lateral.get("maneuvers", ()))
     )
     counted = f"{pitch.count('accepted')} of {len(pitch)}"

@@ -28,7 +28,7 @@ def find_logs(places: Sequence[Path], without: Path) -> list[Path]:
     UnusableInputError
         A folder holds no log.
     """
-    found: dict[Path, Path] = {}
+    by_path: dict[Path, Path] = {}
     for place in places:
         logs = _in_folder(place, without.resolve()) if place.is_dir() else [place]
         if not logs:
@@ -38,8 +38,8 @@ def find_logs(places: Sequence[Path], without: Path) -> list[Path]:
                 "Give a folder with logs in it.",
             )
         for log in logs:
-            found.setdefault(log.resolve(), log)
-    return list(found.values())
+            by_path.setdefault(log.resolve(), log)
+    return list(by_path.values())
 
 
 def _in_folder(folder: Path, without: Path) -> list[Path]:
@@ -79,7 +79,7 @@ def read_map(path: Path) -> AircraftMap:
     """
     content = read_yaml(path)
     if not isinstance(content, dict) or not all(
-        isinstance(one, str) for one in (*content, *content.values())
+        isinstance(text, str) for text in (*content, *content.values())
     ):
         raise ConfigurationError(
             f"{path}: give one line a pattern, as in '\"alpha-*.tlog\": alpha.yaml'; "

@@ -60,8 +60,8 @@ def trend_svg(name: str, unit: str, points: Sequence[Point], since: int | None) 
         at, half = x(point.flight), point.half
         bar = _line(at, y(point.value - half), at, y(point.value + half), _INK, ' stroke-width="1.5"')
         dot = f'<circle cx="{at:.1f}" cy="{y(point.value):.1f}" r="2.5" fill="{_INK}"/>'
-        told = f"<title>flight {point.flight}: {with_half(point.value, half)} {escape(unit)}</title>"
-        parts.append(f'<g class="flight">{told}{bar}{dot}</g>')
+        tooltip = f"<title>flight {point.flight}: {with_half(point.value, half)} {escape(unit)}</title>"
+        parts.append(f'<g class="flight">{tooltip}{bar}{dot}</g>')
     return _framed(title, parts)
 
 

@@ -21,7 +21,7 @@ def in_order(results: Sequence[Analyzed]) -> list[Analyzed]:
     """Return flights, the oldest first if all usable flights have dates, else in the given order."""
     if not all(SINCE_1970_S <= result.began_s < inf for result in results if result.usable):
         return list(results)
-    return sorted(results, key=lambda one: one.began_s if one.usable else inf)
+    return sorted(results, key=lambda result: result.began_s if result.usable else inf)
 
 
 def estimates_of(flights: Sequence[Analyzed]) -> dict[str, list[tuple[int, Estimate]]]:
@@ -49,18 +49,18 @@ def not_told_apart(flights: Sequence[Analyzed]) -> dict[str, str]:
     A system id is 1 by default, so that it identifies no aircraft. Flights without an aircraft file that
     agree count as flights of one aircraft.
     """
-    told = {}
+    sentences = {}
     nameless = [replace(f, joint={}) if f.is_named else f for f in flights]
     for name, several in estimates_of(nameless).items():
         apart = lying_apart(several)
         if apart:
             speeds = [e.airspeed_m_s for _, e in several if e.airspeed_m_s is not None]
             flown = f" They were flown at {min(speeds):.0f} to {max(speeds):.0f} m/s." if speeds else ""
-            told[name] = (
+            sentences[name] = (
                 f"Not distinguished: {name} may be one aircraft that has changed, or several. {apart}{flown} "
                 "Give --aircraft for one aircraft, or --aircraft-map for several."
             )
-    return told
+    return sentences
 
 
 def aircraft_of(flight: Analyzed) -> str:

@@ -39,8 +39,8 @@ def change_over_flights(flights: Sequence[tuple[int, Estimate]]) -> ChangeOverFl
         return None
     since = flights[change.after][0]
     moved = ", ".join(
-        f"{symbol(one.parameter)} is {abs(one.percent):.0f} % {'larger' if one.percent > 0.0 else 'smaller'}"
-        for one in change.moved
+        f"{symbol(m.parameter)} is {abs(m.percent):.0f} % {'larger' if m.percent > 0.0 else 'smaller'}"
+        for m in change.moved
     )
     cause = f"; it looks like {change.looks_like}" if change.looks_like else ""
     doubt = "" if change.confirmed else "; only one flight shows the change"
@@ -65,7 +65,7 @@ def lying_apart(flights: Sequence[tuple[int, Estimate]]) -> str:
             if distance > farthest * widths:
                 farthest = distance / widths
                 values = " and ".join(
-                    with_half(float(one.theta[k]), NORMAL_95 * float(one.std[k])) for one in (first, second)
+                    with_half(float(p.theta[k]), NORMAL_95 * float(p.std[k])) for p in (first, second)
                 )
                 numbers = f"{flights[i][0]} and {flights[j][0]}"
                 sentence = f"{symbol(PARAMETERS[k])} of flights {numbers} lies apart: {values}."

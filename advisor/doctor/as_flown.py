@@ -29,7 +29,7 @@ def as_flown(assumed: Assumed, maneuvers: Sequence[Maneuver], joint: Estimate) -
         Joint estimate of the manoeuvres, which determines the servo's lag best.
     """
     newest = maneuvers[-NEWEST:]
-    singles = [(m, one) for m in newest if isinstance(one := estimate(m, assumed.aircraft), Estimate)]
+    singles = [(m, alone) for m in newest if isinstance(alone := estimate(m, assumed.aircraft), Estimate)]
     singles = singles or [(newest[-1], joint)]
     fits = [single.fits[0] for _, single in singles]
     noise = {name: _median([fit[name].noise for fit in fits if name in fit]) for name in fits[-1]}

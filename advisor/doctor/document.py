@@ -27,17 +27,17 @@ def doctor_document(
     """
     if findings is None:
         assert problem is not None
-        told = plain(problem)
+        entry = plain(problem)
         return {
             "schema": SCHEMA,
             "usable": False,
             "verdict": "not usable",
-            "problems": [told],
+            "problems": [entry],
             "vehicle": None,
             "messages": [],
             "elevator": None,
             "alpha": None,
-            "limits": [told],
+            "limits": [entry],
             "instruments": [],
             "expected_std": None,
             "expected_ci95": None,
@@ -58,7 +58,7 @@ def doctor_document(
         "alpha": plain(findings.alpha),
         "airspeed_m_s": plain(findings.airspeed_m_s),
         "limits": plain(findings.limits),
-        "instruments": [instrument_document(found) for found in findings.instruments],
+        "instruments": [instrument_document(finding) for finding in findings.instruments],
         "notes": list(findings.notes),
         "next": list(commands),
         "expected_std": expectation and plain(expectation.std),

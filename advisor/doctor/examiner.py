@@ -109,7 +109,7 @@ class Examiner:
             if name in paced or name != "elevator"
         }
         still = self._stream.frozen
-        found = problems(
+        stops = problems(
             vehicle,
             self._stream.other_systems,
             self._stream.elevator,
@@ -127,12 +127,12 @@ class Examiner:
         assumed = at_log_rates(assumed, rates, speed) if complete else assumed
         # Rates are compared with the aircraft's own pace where it is known; else with the least for any
         # aircraft.
-        limits = [_stopping(problem, vehicle) for problem in found if problem.code != "rate" or not complete]
+        limits = [_stopping(problem, vehicle) for problem in stops if problem.code != "rate" or not complete]
         limits += distrust_limits([*still, *(d for m in self._maneuvers for d in m.distrusts)])
         instruments = together(self._maneuvers, self._stream.instruments)
-        told = {limit.text for limit in limits}
+        texts = {limit.text for limit in limits}
         limits += [
-            Limit(f.code, f.sentence, f.fix, stops=f.refuses) for f in instruments if f.sentence not in told
+            Limit(f.code, f.sentence, f.fix, stops=f.refuses) for f in instruments if f.sentence not in texts
         ]
         if vehicle is not None and complete:
             limits += rate_limits(paced, assumed, vehicle, speed)
@@ -286,8 +286,8 @@ def is_believable(flown: Estimate) -> bool:
     pace = frequency(ShortPeriod(flown.theta))
     moved = low < pace < high and abs(flown.value("M_delta_e")) > _LEAST_EFFECT * pace**2
     explained = all(fit.r2 > _EXPLAINED for fits in flown.fits for fit in fits.values())
-    known = [PARAMETERS.index(name) for name in ("M_alpha", "M_delta_e")]
-    sharp = bool(np.all(flown.std[known] < _KNOWN_SHARE * np.abs(flown.theta[known])))
+    judged = [PARAMETERS.index(name) for name in ("M_alpha", "M_delta_e")]
+    sharp = bool(np.all(flown.std[judged] < _KNOWN_SHARE * np.abs(flown.theta[judged])))
     return moved and explained and sharp and not {"M_alpha", "M_delta_e"} & flown.not_identifiable.keys()
 
 

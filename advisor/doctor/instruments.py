@@ -57,15 +57,15 @@ def alpha_limits(alpha: ChannelStatus, vehicle: Vehicle) -> list[Limit]:
     return [Limit("alpha_derived", text, better + vane)]
 
 
-def elevator_limits(found: ElevatorFound, elevator: Elevator) -> list[Limit]:
+def elevator_limits(wired: ElevatorFound, elevator: Elevator) -> list[Limit]:
     """Return the defects of the elevator's calibration, resolution and servo."""
     limits = [
-        Limit(d.code, d.text.rstrip("."), f"{d.fix[:1].lower()}{d.fix[1:].rstrip('.')}") for d in found.doubts
+        Limit(d.code, d.text.rstrip("."), f"{d.fix[:1].lower()}{d.fix[1:].rstrip('.')}") for d in wired.doubts
     ]
-    if not found.calibrated:
-        given = "whose pulses are assumed" if found.doubts else "as the parameters state"
-        listed = joined_numbers(found.outputs)
-        several = len(found.outputs) > 1
+    if not wired.calibrated:
+        given = "whose pulses are assumed" if wired.doubts else "as the parameters state"
+        listed = joined_numbers(wired.outputs)
+        several = len(wired.outputs) > 1
         outputs = f"Outputs {listed} are" if several else f"Output {listed} is"
         key = "elevator.outputs, each with its calibration," if several else "elevator.calibration"
         limits.append(
@@ -76,8 +76,8 @@ def elevator_limits(found: ElevatorFound, elevator: Elevator) -> list[Limit]:
                 f"measure the deflection at three pulse widths and give {key} in the aircraft file",
             )
         )
-    if found.resolution_deg > COARSE_DEG:
-        shown, most = distinct_texts(found.resolution_deg, COARSE_DEG, 2)
+    if wired.resolution_deg > COARSE_DEG:
+        shown, most = distinct_texts(wired.resolution_deg, COARSE_DEG, 2)
         limits.append(
             Limit(
                 "resolution",
@@ -97,12 +97,12 @@ def elevator_limits(found: ElevatorFound, elevator: Elevator) -> list[Limit]:
     return limits
 
 
-def distrust_limits(found: Iterable[Distrust]) -> list[Limit]:
+def distrust_limits(distrusts: Iterable[Distrust]) -> list[Limit]:
     """Return a defect for each channel whose values cannot be right. Another function reports a frozen pitch
     rate.
     """
-    told = {d.channel: d for d in found if not (d.stops and d.code == "frozen")}
-    return [Limit(d.code, d.sentence, d.fix, stops=d.stops) for d in told.values()]
+    wrong = {d.channel: d for d in distrusts if not (d.stops and d.code == "frozen")}
+    return [Limit(d.code, d.sentence, d.fix, stops=d.stops) for d in wrong.values()]
 
 
 def repeat_limits(arrivals: Iterable[Arrival]) -> list[Limit]:
@@ -110,12 +110,12 @@ def repeat_limits(arrivals: Iterable[Arrival]) -> list[Limit]:
     return [
         Limit(
             "repeats",
-            f"{one.name} arrives at {one.rate_hz:.0f} Hz, but its values change at {one.renewed_hz:.0f} Hz "
+            f"{a.name} arrives at {a.rate_hz:.0f} Hz, but its values change at {a.renewed_hz:.0f} Hz "
             "only; a repeated value counts once",
-            f"record one stream of {one.name} only: one radio, one rate request, one output of the router",
+            f"record one stream of {a.name} only: one radio, one rate request, one output of the router",
         )
-        for one in arrivals
-        if one.name in _MOTION and one.renewed_hz < _MOSTLY_NEW * one.rate_hz
+        for a in arrivals
+        if a.name in _MOTION and a.renewed_hz < _MOSTLY_NEW * a.rate_hz
     ]
 
 

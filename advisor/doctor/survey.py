@@ -154,10 +154,10 @@ class Survey:
     def _take(self, name: str, part: Columns, master_s: FloatArray, boot: NDArray[np.int64]) -> None:
         sender = self._senders.setdefault(name, _Sender())
         # A heartbeat before the first ATTITUDE has no vehicle time, and is counted by arrival only.
-        known = np.isfinite(master_s)
+        timed = np.isfinite(master_s)
         own_clock = part.component != self._who[1]
-        t = np.where(known, master_s if own_clock else stamps(part, master_s), np.nan)
-        sender.strayed += int(np.count_nonzero(known & ~np.isfinite(t)))
+        t = np.where(timed, master_s if own_clock else stamps(part, master_s), np.nan)
+        sender.strayed += int(np.count_nonzero(timed & ~np.isfinite(t)))
         telling = _telling(part)
         # A dataflash log keeps angles and rates apart: a row without the telling field is no message.
         filled = ~np.all(np.isnan(telling), axis=1) if telling.shape[1] else np.ones(len(part), dtype=bool)
@@ -181,12 +181,12 @@ class Survey:
     def arrivals(self) -> list[Arrival]:
         """Every message that arrived, the most frequent first."""
         pauses = self._pauses()
-        found = [
+        arrivals = [
             _arrival(name, sender, pauses)
             for name, sender in self._senders.items()
             if any(map(len, sender.t))
         ]
-        return sorted(found, key=lambda arrival: (-arrival.count, arrival.name))
+        return sorted(arrivals, key=lambda arrival: (-arrival.count, arrival.name))
 
     @property
     def pauses(self) -> list[str]:

@@ -28,33 +28,33 @@ class ExaminationText:
         self._findings, self._commands = findings, commands
 
     def __rich_console__(self, console: Console, options: ConsoleOptions) -> RenderResult:
-        found = self._findings
-        yield Text(f"{_SIGNS[found.verdict]} {found.verdict.upper()}", style=_STYLES[found.verdict])
-        for limit in found.limits:
+        findings = self._findings
+        yield Text(f"{_SIGNS[findings.verdict]} {findings.verdict.upper()}", style=_STYLES[findings.verdict])
+        for limit in findings.limits:
             yield from _told(limit)
-        yield from (Text(f"  note: {note}") for note in found.notes)
+        yield from (Text(f"  note: {note}") for note in findings.notes)
         yield Text()
         yield Text(self._who())
         yield Text(self._elevator())
         yield Text(self._alpha())
-        if found.airspeed_m_s is not None:
-            low, high = found.airspeed_m_s
+        if findings.airspeed_m_s is not None:
+            low, high = findings.airspeed_m_s
             yield Text(f"air speed  {low:.1f} to {high:.1f} m/s read in flight")
         yield Text(self._clocks())
         yield Text()
-        yield message_table("messages", plain(found.messages)).on_console()
-        if found.expectation is not None:
+        yield message_table("messages", plain(findings.messages)).on_console()
+        if findings.expectation is not None:
             yield Text()
             yield Text(
-                f"Expected errors of one 3-2-1-1, steps of {found.expectation.unit_s:.2f} s and "
-                f"±{found.expectation.amplitude_deg:.1f} deg, computed from {found.assumed.source}, "
-                f"natural frequency {frequency(found.assumed.model):.1f} rad/s. "
+                f"Expected errors of one 3-2-1-1, steps of {findings.expectation.unit_s:.2f} s and "
+                f"±{findings.expectation.amplitude_deg:.1f} deg, computed from {findings.assumed.source}, "
+                f"natural frequency {frequency(findings.assumed.model):.1f} rad/s. "
                 "Half of the 95 % interval (1.96 standard deviations), if the model is complete; analyze "
                 "adds the error of the model:"
             )
             for name in PARAMETERS:
                 quantity = QUANTITIES[name]
-                half = NORMAL_95 * found.expectation.std[name] * quantity.factor
+                half = NORMAL_95 * findings.expectation.std[name] * quantity.factor
                 unit = "" if quantity.unit == "1" else quantity.unit
                 said = f"± {half:.2g} {unit}" if math.isfinite(half) else "not identifiable at these rates"
                 yield Text(f"  {quantity.symbol:<10} {said}".rstrip())

@@ -16,7 +16,7 @@ from advisor.words.digits import decimals_for, signed, with_half
 from advisor.words.quantiles import NORMAL_95
 from advisor.words.quantities import PARAMETERS, SIDE_PARAMETERS
 
-UNITS = {**{name: one.unit for name, one in {**PARAMETERS, **SIDE_PARAMETERS}.items()}, **MODES}
+UNITS = {**{name: quantity.unit for name, quantity in {**PARAMETERS, **SIDE_PARAMETERS}.items()}, **MODES}
 UNITS |= {"Z_0": "rad/s", "M_0": "rad/s²"}
 """SI unit of each derivative and mode, by its key in the file."""
 _ORIGINS = {"number": "", "model": " (model)", "log": " (log)"}
@@ -65,8 +65,8 @@ def _counts(expected: Expectations, flown: Flown) -> Iterator[Outcome]:
     for axis, latest in expected.complete.items():
         test = flown.tests.get(axis)
         at = test.stopped_at if test is not None and test.decision == "stop" else None
-        found = "not complete" if at is None else f"manoeuvre {at}"
-        yield Outcome(f"complete.{axis}", f"by manoeuvre {latest}", found, at is not None and at <= latest)
+        shown = "not complete" if at is None else f"manoeuvre {at}"
+        yield Outcome(f"complete.{axis}", f"by manoeuvre {latest}", shown, at is not None and at <= latest)
 
 
 def _numbers(
@@ -131,8 +131,8 @@ def _near(path: str, near: Near, against: Measured, measured: Measured, unit: st
     if near.known_to is not None:
         asked.append(f"known to ± {near.known_to:g}")
         holds = holds and half <= near.known_to
-    found = with_half(measured.value, half) if isfinite(half) else signed(measured.value, 3)
-    return Outcome(path, ", ".join(asked), measured.reason or f"{found} {unit}".rstrip(), holds)
+    shown = with_half(measured.value, half) if isfinite(half) else signed(measured.value, 3)
+    return Outcome(path, ", ".join(asked), measured.reason or f"{shown} {unit}".rstrip(), holds)
 
 
 def _levels(expected: Expectations, flown: Flown) -> Iterator[Outcome]:
@@ -141,29 +141,29 @@ def _levels(expected: Expectations, flown: Flown) -> Iterator[Outcome]:
         for category, allowed in worst.items():
             level = levels.get(category)
             asked = "Level 1" if allowed == 1 else f"Level {allowed} or better"
-            found = "none: the flight does not show the modes" if level is None else level.sentence
-            found = found.removeprefix(f"Category {category}: ")
+            shown = "none: the flight does not show the modes" if level is None else level.sentence
+            shown = shown.removeprefix(f"Category {category}: ")
             holds = level is not None and level.level <= allowed
-            yield Outcome(f"levels.{axis}.{category}", asked, found, holds)
+            yield Outcome(f"levels.{axis}.{category}", asked, shown, holds)
 
 
 def _gaps(expected: Expectations, flown: Flown) -> Iterator[Outcome]:
     for axis, largest in expected.gap.items():
         gap = flown.gap.get(axis, Measured(reason="not diagnosed"))
-        found = gap.reason or f"{gap.value:.3g}"
-        yield Outcome(f"gap.{axis}", f"at most {largest:g}", found, gap.value <= largest)
+        shown = gap.reason or f"{gap.value:.3g}"
+        yield Outcome(f"gap.{axis}", f"at most {largest:g}", shown, gap.value <= largest)
 
 
 def _pauses(expected: Expectations, flown: Flown) -> Iterator[Outcome]:
     for channel, longest in expected.longest_pause_s.items():
         pause = flown.pauses_s.get(channel)
-        found = "not in this log" if pause is None else f"{pause:.3g} s"
+        shown = "not in this log" if pause is None else f"{pause:.3g} s"
         holds = pause is not None and pause <= longest
-        yield Outcome(f"longest_pause_s.{channel}", f"at most {longest:g} s", found, holds)
+        yield Outcome(f"longest_pause_s.{channel}", f"at most {longest:g} s", shown, holds)
 
 
 def _alarms(expected: Expectations, flown: Flown) -> Iterator[Outcome]:
     if expected.alarms is not None:
         count, most = len(flown.alarms), expected.alarms
-        found = "none" if not count else f"{count}: {'; '.join(flown.alarms)}"
-        yield Outcome("alarms", f"at most {most}" if most else "none", found, count <= most)
+        shown = "none" if not count else f"{count}: {'; '.join(flown.alarms)}"
+        yield Outcome("alarms", f"at most {most}" if most else "none", shown, count <= most)

@@ -45,10 +45,10 @@ def junit(log: str, file: str, outcomes: Sequence[Outcome], problems: Sequence[P
     }
     root = Element("testsuites", {"name": "advisor expect", **counts})
     suite = SubElement(root, "testsuite", {"name": log, **counts})
-    for one in outcomes:
-        case = SubElement(suite, "testcase", classname=file, name=one.name)
-        said = f"asked: {one.asked}; found: {one.found}"
-        if one.holds:
+    for outcome in outcomes:
+        case = SubElement(suite, "testcase", classname=file, name=outcome.name)
+        said = f"asked: {outcome.asked}; found: {outcome.found}"
+        if outcome.holds:
             SubElement(case, "system-out").text = said
         else:
             SubElement(case, "failure", message=said, type="expectation").text = said

@@ -26,17 +26,17 @@ def draft(flown: Flown, log: str) -> str:
     numbers, z is the normal quantile at which all n differences lie within their tolerances in 95 % of the
     second flights.
     """
-    known = {
+    by_section = {
         section: {
-            name: one
-            for name, one in getattr(flown, section).items()
-            if isfinite(one.std) and name not in _OF_TRIM
+            name: measured
+            for name, measured in getattr(flown, section).items()
+            if isfinite(measured.std) and name not in _OF_TRIM
         }
         for section in ("derivatives", "modes")
     }
-    count = sum(map(len, known.values()))
+    count = sum(map(len, by_section.values()))
     z = sqrt(2.0) * float(ndtri(0.5 + 0.5 * _ALL_HOLD ** (1.0 / max(count, 1))))
-    return "\n".join([*_counts(flown, log), *_numbers(known, z), *_rest(flown), ""])
+    return "\n".join([*_counts(flown, log), *_numbers(by_section, z), *_rest(flown), ""])
 
 
 def _counts(flown: Flown, log: str) -> Iterator[str]:
@@ -50,27 +50,27 @@ def _counts(flown: Flown, log: str) -> Iterator[str]:
         yield f"complete: {_inline(complete)}  # by this manoeuvre"
 
 
-def _numbers(known: Mapping[str, Mapping[str, Measured]], z: float) -> Iterator[str]:
-    for section, numbers in known.items():
+def _numbers(by_section: Mapping[str, Mapping[str, Measured]], z: float) -> Iterator[str]:
+    for section, numbers in by_section.items():
         if numbers:
             share = f"{100.0 * _ALL_HOLD:.0f} %"
             yield f"{section}:  # within: in {share} of second flights every number holds"
-        for name, one in numbers.items():
-            within = z * one.std
+        for name, measured in numbers.items():
+            within = z * measured.std
             decimals = decimals_for(within)
             # Rounded up, so that the flight itself never fails by the rounding.
-            text = f"{{of: {one.value:.{decimals}f}, within: {within + 10.0**-decimals:.{decimals}f}}}"
+            text = f"{{of: {measured.value:.{decimals}f}, within: {within + 10.0**-decimals:.{decimals}f}}}"
             yield f"  {name}: {text}" + (f"  # {UNITS[name]}" if UNITS[name] else "")
 
 
 def _rest(flown: Flown) -> Iterator[str]:
     levels = {
-        axis: {one.category: one.level for one in found if one.level <= _WORST_ASKED}
-        for axis, found in flown.levels.items()
+        axis: {level.category: level.level for level in of_axis if level.level <= _WORST_ASKED}
+        for axis, of_axis in flown.levels.items()
     }
     if any(levels.values()):
         yield "levels:  # of MIL-F-8785C, by category of flight phases: this one or better"
-        yield from (f"  {axis}: {_inline(one)}" for axis, one in levels.items() if one)
+        yield from (f"  {axis}: {_inline(worst)}" for axis, worst in levels.items() if worst)
     yield f"alarms: {len(flown.alarms)}  # at most"
 
 

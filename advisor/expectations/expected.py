@@ -45,7 +45,7 @@ class Near:
         Where both tolerances are given, the larger one counts.
         """
         share = None if self.within_percent is None else abs(value) * self.within_percent / 100.0
-        allowed = [one for one in (self.within, share) if one is not None]
+        allowed = [limit for limit in (self.within, share) if limit is not None]
         return max(allowed) if allowed else None
 
 
@@ -74,4 +74,4 @@ class Expectations:
     @property
     def asks_of_log(self) -> bool:
         """Whether an expected value comes from another log."""
-        return any(one.origin == "log" for one in (*self.derivatives.values(), *self.modes.values()))
+        return any(near.origin == "log" for near in (*self.derivatives.values(), *self.modes.values()))

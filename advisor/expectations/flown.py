@@ -73,21 +73,21 @@ def flown_of(flights: WholeFlights, aircraft: Aircraft, gap: Mapping[AxisName, M
     trim = None
     if side is not None:
         light = next(iter(GROUPS))
-        levels["lateral"] = tuple(one.governing for one in levels_of(side) if one.group == light)
+        levels["lateral"] = tuple(rated.governing for rated in levels_of(side) if rated.group == light)
         none = "no manoeuvre of the aileron or the rudder is accepted"
         derivatives |= _derivatives(side.model, SIDE_PARAMETERS, none)
         if side.model is not None:
-            joined = [one.maneuver for one in side.maneuvers if one.maneuver.number in side.estimate_from]
+            joined = [m.maneuver for m in side.maneuvers if m.maneuver.number in side.estimate_from]
             trim = trim_of(joined, side.model.airspeed_m_s or nan)
-    heard = {name: one for flight in state.flights for name, one in flight.channels.items()}
-    judged = [one for axis in state.axes.values() for one in axis.maneuvers]
+    heard = {name: status for flight in state.flights for name, status in flight.channels.items()}
+    judged = [m for axis in state.axes.values() for m in axis.maneuvers]
     return Flown(
         accepted={name: sum(j.verdict.accepted for j in axis.maneuvers) for name, axis in state.axes.items()},
         tests={name: axis.flight_test for name, axis in state.axes.items()},
         derivatives=derivatives,
         modes=modes,
         levels=levels,
-        pauses_s={name: one.largest_gap_s for name, one in heard.items()},
+        pauses_s={name: status.largest_gap_s for name, status in heard.items()},
         alarms=tuple(_alarms(state)),
         gap=gap,
         trim=trim,
@@ -96,7 +96,7 @@ def flown_of(flights: WholeFlights, aircraft: Aircraft, gap: Mapping[AxisName, M
             for name, axis in state.axes.items()
             if axis.model and axis.model.airspeed_m_s
         },
-        true_over_read=true_over_read(one.maneuver.channels for one in judged),
+        true_over_read=true_over_read(m.maneuver.channels for m in judged),
     )
 
 
@@ -134,8 +134,8 @@ def _measured(quality: Quality | None, reason: str) -> Measured:
 
 def _alarms(state: CampaignState) -> Iterator[str]:
     yield from (warning for axis in state.axes.values() for warning in axis.flight_test.warnings)
-    yield from (one.text for one in state.instruments if one.contradicts)
-    yield from (one.sentence for one in state.failed)
+    yield from (finding.text for finding in state.instruments if finding.contradicts)
+    yield from (failure.sentence for failure in state.failed)
 
 
 def gap_of(

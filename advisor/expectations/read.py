@@ -87,21 +87,21 @@ class _Reader:
         if not isinstance(given, dict):
             self.mistakes.append(f"{path or 'file'}: must hold keys with values")
             return {}
-        known: dict[str, Any] = {}
+        present: dict[str, Any] = {}
         for key, value in given.items():
             if names and key not in names:
                 near = get_close_matches(str(key), names, 1)
                 meant = f"did you mean {near[0]}?" if near else f"the keys are {', '.join(names)}"
                 self.mistakes.append(f"{path}{'.' if path else ''}{key}: unknown key ({meant})")
             elif value is not None:
-                known[str(key)] = value
-        return known
+                present[str(key)] = value
+        return present
 
     def _each(
         self, path: str, given: Any, names: Sequence[str], read: Callable[[str, Any], _Value | None]
     ) -> dict[str, _Value]:
         """Return the values of a section by key, as far as they can be read."""
-        values = {key: read(f"{path}.{key}", one) for key, one in self._known(path, given, names).items()}
+        values = {key: read(f"{path}.{key}", raw) for key, raw in self._known(path, given, names).items()}
         return {key: value for key, value in values.items() if value is not None}
 
     def _number(self, path: str, given: Any, must: str, allowed: Callable[[float], bool]) -> float | None:

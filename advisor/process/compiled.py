@@ -46,13 +46,13 @@ def kernel(**options: Any) -> Callable[[Function], Function]:
     """
 
     def compiled(function: Function) -> Function:
-        found: Any = numba.njit(**options)(function)
-        if found is not function:  # NUMBA_DISABLE_JIT leaves functions as they are.
+        dispatcher: Any = numba.njit(**options)(function)
+        if dispatcher is not function:  # NUMBA_DISABLE_JIT leaves functions as they are.
             with suppress(RuntimeError):  # numba finds no folder to write to
-                found.enable_caching()
-                found._cache._cache_file.__class__ = _Kept
-                found._cache._cache_file._source_stamp = key_of(function.__module__)
-        return cast("Function", found)
+                dispatcher.enable_caching()
+                dispatcher._cache._cache_file.__class__ = _Kept
+                dispatcher._cache._cache_file._source_stamp = key_of(function.__module__)
+        return cast("Function", dispatcher)
 
     return compiled
 
@@ -70,7 +70,7 @@ class _Kept(_CacheFile):  # type: ignore[misc]
         """
         kept = self._load_index()
         free = (self._data_name(n) for n in range(1, len(kept) + 2))
-        name = kept.get(key) or next(one for one in free if one not in kept.values())
+        name = kept.get(key) or next(candidate for candidate in free if candidate not in kept.values())
         with suppress(OSError):
             self._save_data(name, data)
             self._save_index(kept | {key: name})
@@ -98,14 +98,14 @@ def key_of(module: str) -> str:
     -------
     SHA-256 in hexadecimal; equal wherever the texts are, whatever their folder and their time.
     """
-    found, ahead = set[str](), [module]
+    modules, ahead = set[str](), [module]
     while ahead:
         name = ahead.pop()
-        if name not in found:
-            found.add(name)
+        if name not in modules:
+            modules.add(name)
             ahead += _imports_of(name)
     whole = hashlib.sha256()
-    for name in sorted(found):
+    for name in sorted(modules):
         whole.update(name.encode() + b"\0" + _text_of(name) + b"\0")
     return whole.hexdigest()
 

@@ -73,7 +73,7 @@ def _folder() -> Path | None:
 
 def _writable(folder: Path) -> bool:
     """Return whether files can be written into a folder, or into its nearest existing parent."""
-    nearest = next(one for one in (folder, *folder.parents) if one.exists())
+    nearest = next(path for path in (folder, *folder.parents) if path.exists())
     return nearest.is_dir() and os.access(nearest, os.W_OK)
 
 

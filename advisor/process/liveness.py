@@ -95,12 +95,12 @@ class Watch:
         self._hurries = True
 
     def _run(self) -> None:
-        known, silent_s, looked_s = self._messages, 0.0, monotonic()
+        counted, silent_s, looked_s = self._messages, 0.0, monotonic()
         while not self._over.wait(_LOOK_EVERY_S):
             before_s, looked_s = looked_s, monotonic()
             silent_s += min(looked_s - before_s, 2.0 * _LOOK_EVERY_S)
-            if self._messages != known:
-                known, silent_s = self._messages, 0.0
+            if self._messages != counted:
+                counted, silent_s = self._messages, 0.0
             if silent_s >= self._end_s:
                 self.ended_after_s = silent_s
                 self._process.kill()

@@ -65,7 +65,7 @@ def stated_outputs(aircraft: Aircraft, control: Control) -> tuple[StatedOutput, 
     surface = getattr(aircraft, control)
     if control == "elevator" and aircraft.elevator.outputs:
         listed = aircraft.elevator.outputs
-        return tuple(StatedOutput(one.output, float(np.sign(one.weight)), one.calibration) for one in listed)
+        return tuple(StatedOutput(o.output, float(np.sign(o.weight)), o.calibration) for o in listed)
     if surface.output == "auto":
         return ()
     return (StatedOutput(surface.output, 1.0, surface.calibration),)

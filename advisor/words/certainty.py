@@ -33,8 +33,8 @@ def doubt_of(answers: Answers) -> str:
     """Return the sentence on the two likeliest answers; empty if one answer is decided."""
     if len(answers) < 2 or is_decided(answers):
         return ""
-    (one, p), (other, q) = answers[:2]
-    return f"Not decided between {one} ({100.0 * p:.0f} %) and {other} ({100.0 * q:.0f} %)."
+    (first, p), (second, q) = answers[:2]
+    return f"Not decided between {first} ({100.0 * p:.0f} %) and {second} ({100.0 * q:.0f} %)."
 
 
 def as_sure(sentence: str, answers: Answers) -> str:

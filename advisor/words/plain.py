@@ -18,8 +18,8 @@ def plain(value: Any) -> Any:
     if is_dataclass(value):
         return {attribute.name: plain(getattr(value, attribute.name)) for attribute in fields(value)}
     if isinstance(value, Mapping):
-        return {key: plain(one) for key, one in value.items()}
-    return [plain(one) for one in value] if isinstance(value, Iterable) else value
+        return {key: plain(item) for key, item in value.items()}
+    return [plain(item) for item in value] if isinstance(value, Iterable) else value
 
 
 def picked(result: Any, names: str) -> Any:

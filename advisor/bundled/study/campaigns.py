@@ -184,11 +184,11 @@ def outcome(
         if good:
             taken.append(estimate)
         if rule == "information":
-            known = knowledge(flown[:number], plan)
-            history.append(known.percent)
-            if known.sufficient or number == len(campaign):
-                needed = number if known.sufficient else None
-                return RuleOutcome(needed, known.posterior.theta, known.tolerance, tuple(history), 0)
+            standing = knowledge(flown[:number], plan)
+            history.append(standing.percent)
+            if standing.sufficient or number == len(campaign):
+                needed = number if standing.sufficient else None
+                return RuleOutcome(needed, standing.posterior.theta, standing.tolerance, tuple(history), 0)
             continue
         members = window(taken, plan)
         history.append(None if members is None else scatter_percent(members, plan.criterion))

@@ -54,8 +54,8 @@ def refuse_undrawable(path: Path) -> None:
         raise ConfigurationError(
             "--figure needs matplotlib: pip install 'inflight-advisor[report]'."
         ) from error
-    known = FigureCanvasBase.get_supported_filetypes()
-    if path.suffix and path.suffix[1:].lower() not in known:
+    endings = FigureCanvasBase.get_supported_filetypes()
+    if path.suffix and path.suffix[1:].lower() not in endings:
         raise ConfigurationError(f"--figure: no picture ends in {path.suffix}; name a .png or .svg file.")
 
 
@@ -76,14 +76,14 @@ def draw(curves: Sequence[Curve], path: Path) -> None:
     FigureCanvasAgg(figure)
     axes = figure.subplots(1, len(rules), sharey=True)
     for axis, rule in zip(axes, rules, strict=True):
-        for marker, one in zip("osD", (c for c in curves if c.rule == rule), strict=False):
-            known = [(i + 1, q) for i, q in enumerate(one.quantiles) if q is not None]
-            number = [i for i, _ in known]
+        for marker, curve in zip("osD", (c for c in curves if c.rule == rule), strict=False):
+            bands = [(i + 1, q) for i, q in enumerate(curve.quantiles) if q is not None]
+            number = [i for i, _ in bands]
             (line,) = axis.plot(
-                number, [q[1] for _, q in known], marker=marker, label=f"noise {one.noise_percent:g} %"
+                number, [q[1] for _, q in bands], marker=marker, label=f"noise {curve.noise_percent:g} %"
             )
             axis.fill_between(
-                number, [q[0] for _, q in known], [q[2] for _, q in known], color=line.get_color(), alpha=0.15
+                number, [q[0] for _, q in bands], [q[2] for _, q in bands], color=line.get_color(), alpha=0.15
             )
         axis.axhline(LIMIT_PERCENT, color="black", linestyle="--", linewidth=1.0, label="limit 25 %")
         axis.set(title=rule, xlabel="manoeuvres flown", yscale="log", xlim=(2.7, len(ORDER) + 0.3))
@@ -113,9 +113,9 @@ def in_terminal(curves: Sequence[Curve], rule: Rule, height: int = 13) -> list[s
     width = 6
     grid = [[" "] * (width * len(ORDER) + 1) for _ in range(height)]
     grid[line_of(LIMIT_PERCENT)] = list("-" * (width * len(ORDER) + 1))
-    for one in chosen:
-        symbol = f"{one.noise_percent:g}"
-        for i, q in enumerate(one.quantiles):
+    for curve in chosen:
+        symbol = f"{curve.noise_percent:g}"
+        for i, q in enumerate(curve.quantiles):
             if q is not None:
                 at = width * i + 2
                 grid[line_of(q[1])][at : at + len(symbol)] = list(symbol)

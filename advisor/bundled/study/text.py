@@ -115,9 +115,9 @@ def wrapped(text: str) -> list[str]:
     """Wrap a sentence into lines of 80 columns. Lines after the first are indented, and a number keeps its %
     sign.
     """
-    told = text.lstrip().replace(" %", "\N{NO-BREAK SPACE}%")
+    joined = text.lstrip().replace(" %", "\N{NO-BREAK SPACE}%")
     begins = " " * (len(text) - len(text.lstrip()))
-    lines = wrap(told, _COLUMNS, initial_indent=begins, subsequent_indent="    ")
+    lines = wrap(joined, _COLUMNS, initial_indent=begins, subsequent_indent="    ")
     return [line.replace("\N{NO-BREAK SPACE}", " ") for line in lines]
 
 

@@ -62,14 +62,14 @@ def run_on_cluster(
     if not tasks:
         return
     with _connected(address) as client:
-        found = _versions_on(client)
-        if not found["workers"]:
+        versions = _versions_on(client)
+        if not versions["workers"]:
             raise ConfigurationError(
                 f"--scheduler: the cluster at {address} has no workers;"
                 f" start some with 'dask worker {address}'."
             )
-        workers = {worker: _named(there["packages"]) for worker, there in found["workers"].items()}
-        if caution := compare_versions(_named(found["client"]["packages"]), workers):
+        workers = {worker: _named(there["packages"]) for worker, there in versions["workers"].items()}
+        if caution := compare_versions(_named(versions["client"]["packages"]), workers):
             tell(caution)
         pool = client.get_executor(pure=False)
         try:
@@ -131,9 +131,9 @@ def _versions_on(client: "Client") -> dict[str, Any]:
     end = time.monotonic() + CONNECT_S
     while True:
         # Dask tells Python's version unasked, and none where it is asked for a package of that name.
-        found: dict[str, Any] = client.get_versions(packages=[*_ADVISOR, *_TOLD])
-        if found["workers"] or time.monotonic() > end:
-            return found
+        versions: dict[str, Any] = client.get_versions(packages=[*_ADVISOR, *_TOLD])
+        if versions["workers"] or time.monotonic() > end:
+            return versions
         time.sleep(0.1)
 
 
@@ -183,9 +183,9 @@ def compare_versions(here: Versions, workers: Mapping[str, Versions]) -> str:
         for name in (*_SAME, *_TOLD):
             mine, other = _version(here, name), _version(there, name)
             if mine != other or (other is None and name in _SAME):
-                told = f"{name} {other} on {worker}, {mine} here" if other else f"no {name} on {worker}"
-                differing.setdefault(name, told)
-    refused = [told for name, told in differing.items() if name in _SAME]
+                difference = f"{name} {other} on {worker}, {mine} here" if other else f"no {name} on {worker}"
+                differing.setdefault(name, difference)
+    refused = [difference for name, difference in differing.items() if name in _SAME]
     if refused:
         raise ConfigurationError(
             f"--scheduler: workers need this advisor and this Python, but there is {'; '.join(refused)}. "
