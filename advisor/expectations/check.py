@@ -137,7 +137,7 @@ def _near(path: str, near: Near, against: Measured, measured: Measured, unit: st
 
 def _levels(expected: Expectations, flown: Flown) -> Iterator[Outcome]:
     for axis, worst in expected.levels.items():
-        levels = {one.category: one for one in flown.levels.get(axis, ())}
+        levels = {level.category: level for level in flown.levels.get(axis, ())}
         for category, allowed in worst.items():
             level = levels.get(category)
             asked = "Level 1" if allowed == 1 else f"Level {allowed} or better"

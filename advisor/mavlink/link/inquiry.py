@@ -69,12 +69,12 @@ class Inquiry(Talker):
         if frame.message_id != _PARAM_VALUE:
             return
         name = payload[8:24].partition(b"\0")[0].decode("ascii", "replace")
-        known = name in self.parameters
+        is_new = name not in self.parameters
         value = self.parameters[name] = self._questions.value(payload)
         self._standing.pop(name, None)
         if name in self._to_ask:
             self._to_ask.remove(name)
-        if not known:
+        if is_new:
             details = self._questions.follow(name, value)
             self._to_ask += [detail for detail in details if detail not in self.parameters]
             self._existing.update(details)
