@@ -26,7 +26,8 @@ from scipy.optimize import fsolve
 from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft.reference import PARAMETERS, SIDE_PARAMETERS, Reference
 from advisor.analysis.axes.side_comparison import accepted_of, compare_side_flown
-from advisor.analysis.gap import compare_logs, maneuvers_of
+from advisor.analysis.gap import compare_logs
+from advisor.analysis.gap_flights import maneuvers_of
 from advisor.analysis.whole_flights import read_whole
 from advisor.cli.options import read_aircraft
 from advisor.exports.models.axes.handed_over import improved_side

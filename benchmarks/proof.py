@@ -11,7 +11,8 @@ from pathlib import Path
 
 import click
 
-from advisor.analysis.gap import compare_flown, maneuvers_of, named_simulator
+from advisor.analysis.gap import compare_flown, named_simulator
+from advisor.analysis.gap_flights import maneuvers_of
 from advisor.cli.options import decided_on, read_aircraft
 from advisor.exports.models.axes.prove_pitch import prove
 from advisor.exports.models.proof import Proof

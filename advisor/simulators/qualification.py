@@ -50,8 +50,7 @@ def _error(problem: EffectProblem, held: HeldOut, kept: Sequence[int], c: int) -
         largest = max(largest, float(np.max(np.abs(_averaged(out.t, residual)))))
         measured.append(out.y)
         simulated.append(out.y - residual)
-    yardstick = yardsticks(problem.channels[c], np.concatenate(measured), np.concatenate(simulated))
-    return largest, yardstick.theil
+    return largest, yardsticks(problem.channels[c], np.concatenate(measured), np.concatenate(simulated)).theil
 
 
 def _averaged(t: FloatArray, y: FloatArray) -> FloatArray:

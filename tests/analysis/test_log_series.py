@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.analysis.gap import maneuvers_of
+from advisor.analysis.gap_flights import maneuvers_of
 from advisor.analysis.log_series import LogSeries
 from advisor.analysis.marks_file import write_by_hand
 from advisor.campaign.campaign import Campaign, CampaignEvent

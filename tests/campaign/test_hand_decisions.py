@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from advisor.aircraft.aircraft import Aircraft, Markers
-from advisor.analysis.gap import maneuvers_of
+from advisor.analysis.gap_flights import maneuvers_of
 from advisor.analysis.marks_file import read_by_hand, write_by_hand
 from advisor.campaign.campaign import Campaign
 from advisor.campaign.hand_decisions import NOTHING, ByHand, Remark

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.analysis.gap import maneuvers_of
+from advisor.analysis.gap_flights import maneuvers_of
 from advisor.gap.records.prepare import prepare
 from advisor.gap.records.usable import usable_of
 from advisor.gap.search.baseline import fit_baseline

@@ -12,7 +12,7 @@ import pytest
 from advisor.aircraft.aircraft import Aircraft
 from advisor.analysis import gap as pitch_logs
 from advisor.analysis import whole_flights
-from advisor.analysis.gap import GapFlights
+from advisor.analysis.gap_flights import GapFlights
 from advisor.cli.axes import lateral_gap
 from advisor.gap import diagnose
 from advisor.gap.axes.lateral import comparison

@@ -9,7 +9,7 @@ import pytest
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft.controls import Elevator
-from advisor.analysis.gap import maneuvers_of
+from advisor.analysis.gap_flights import maneuvers_of
 from advisor.flight.instruments.kinematics import check_alpha, combine
 from tests.gap.diagnosed import diagnose
 

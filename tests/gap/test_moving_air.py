@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from advisor.aircraft_file.read import load_aircraft
-from advisor.analysis.gap import maneuvers_of
+from advisor.analysis.gap_flights import maneuvers_of
 from advisor.gap.records.prepare import prepare
 from advisor.gap.search import air
 from advisor.gap.search.air import moving_air

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.analysis.gap import maneuvers_of
+from advisor.analysis.gap_flights import maneuvers_of
 from advisor.gap.simulator.layout import EFFECT_ENTRIES, ENTRIES, INDEX
 from advisor.gap.simulator.surface import surface
 from sim.effects.fitting import flight_of

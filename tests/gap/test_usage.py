@@ -2,7 +2,6 @@
 
 import os
 from pathlib import Path
-from types import SimpleNamespace
 
 import pytest
 from click.testing import CliRunner
@@ -10,6 +9,7 @@ from click.testing import CliRunner
 from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft.reference import PARAMETERS
 from advisor.analysis import gap as reading
+from advisor.analysis.gap_flights import maneuvers_of
 from advisor.cli import group as cli
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.gap.result import Diagnosis
@@ -141,14 +141,13 @@ def test_without_an_order_no_file_is_written_and_the_command_that_would_is_said(
 def test_a_log_that_is_given_twice_counts_once_and_a_note_says_so(monkeypatch):
     judged: list[Maneuver] = []
 
-    def noted(maneuvers: list[Maneuver], *_: object) -> SimpleNamespace:
+    def noted(maneuvers: list[Maneuver], *_: object) -> Compared:
         judged.extend(maneuvers)
-        return SimpleNamespace(diagnosis=diagnosis(notes=("The command was held.",)), findings=None)
+        return Compared(diagnosis(notes=("The command was held.",)), Aircraft())
 
-    monkeypatch.setattr(reading, "examine", noted)
-    monkeypatch.setattr(reading, "with_static_errors", lambda told, _: told)
+    monkeypatch.setattr(reading, "compare_to_file", noted)
     log = recorded("uav", 1.0, maneuvers=TWO)
-    once = reading.maneuvers_of([log], Aircraft()).maneuvers
+    once = maneuvers_of([log], Aircraft()).maneuvers
     found = reading.compare_logs([log, log], Aircraft()).diagnosis
     assert [m.number for m in judged] == [m.number for m in once]
     assert found.notes[0].startswith(f"{len(once)} of {2 * len(once)} manoeuvres are recorded twice")
@@ -156,8 +155,8 @@ def test_a_log_that_is_given_twice_counts_once_and_a_note_says_so(monkeypatch):
 
 def test_two_flights_of_the_same_plan_both_count():
     flights = [recorded("uav", 1.0, seed, TWO) for seed in (11, 12)]
-    once = reading.maneuvers_of(flights[:1], Aircraft()).maneuvers
-    both = reading.maneuvers_of(flights, Aircraft()).maneuvers
+    once = maneuvers_of(flights[:1], Aircraft()).maneuvers
+    both = maneuvers_of(flights, Aircraft()).maneuvers
     assert len(both) == 2 * len(once)
     # A second log begins its clock anew; here it runs on, so that what drifts does so in order of flying.
     starts = [m.span.start_s for m in both]

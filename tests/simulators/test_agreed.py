@@ -8,6 +8,7 @@ import pytest
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.analysis import gap as reading
+from advisor.analysis.gap_flights import GapFlights
 from advisor.gap.result import ComparedDerivative, Value
 from advisor.oem.estimate import NoEstimate
 from advisor.simulators.agreed import agreeing
@@ -55,12 +56,7 @@ def test_derivatives_agree_with_the_log_next_to_a_users_simulator(kind, monkeypa
     """The aircraft file's own model is its surrogate, so that nothing is subtracted from the log."""
     simulator = Nonlinear() if kind == "user's" else None
     monkeypatch.setattr(reading, "compare", lambda *_: Compared(diagnosis(), Aircraft()))
-    examined = SimpleNamespace(diagnosis=diagnosis(), findings=None)
-    monkeypatch.setattr(reading, "examine", lambda *_: examined)
-    monkeypatch.setattr(reading, "with_static_errors", lambda told, *_: told)
-    monkeypatch.setattr(reading, "without_simulator", lambda told, *_: told)
+    monkeypatch.setattr(reading, "compare_to_file", lambda *_: Compared(diagnosis(), Aircraft()))
     monkeypatch.setattr(reading, "estimate_jointly", lambda *_: LOGGED)
-    told = reading.compare_flown(
-        reading.GapFlights(flown(maneuvers=2), 0, ()), Aircraft(), simulator
-    ).diagnosis
+    told = reading.compare_flown(GapFlights(flown(maneuvers=2), 0, ()), Aircraft(), simulator).diagnosis
     assert (told.model["Z_delta_e"] == OWN) == (kind == "file's")

@@ -9,6 +9,7 @@ import pytest
 from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft.reference import Reference
 from advisor.analysis import gap as gap_of_logs
+from advisor.analysis.gap_flights import GapFlights
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.flight.signals.record import Channel
 from advisor.flight.signals.true_airspeed import standard_pressure
@@ -94,6 +95,6 @@ def test_the_reference_speed_of_linear_is_made_true_as_the_flights_speed_is(monk
     monkeypatch.setattr(gap_of_logs, "compare", told)
     file = Aircraft(reference_airspeed_m_s=20.0)
     with pytest.raises(ToldError):
-        gap_of_logs.compare_flown(gap_of_logs.GapFlights(read, 0, ()), file, LinearSimulator({}, 20.0))
+        gap_of_logs.compare_flown(GapFlights(read, 0, ()), file, LinearSimulator({}, 20.0))
     assert asked["simulator"].reference_m_s == pytest.approx(22.0)
     assert asked["aircraft"].reference_airspeed_m_s == pytest.approx(22.0)

@@ -5,7 +5,8 @@ from pathlib import Path
 import pytest
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.analysis.gap import compare_logs, maneuvers_of, named_simulator
+from advisor.analysis.gap import compare_logs, named_simulator
+from advisor.analysis.gap_flights import maneuvers_of
 from advisor.simulators.by_log import IdentifiedSimulator
 from sim.effects.fitting import flight_of
 from sim.record import record

@@ -9,7 +9,7 @@ import numpy as np
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft.reference import SIDE_PARAMETERS
-from advisor.analysis.gap import GapFlights, maneuvers_of
+from advisor.analysis.gap_flights import GapFlights, maneuvers_of
 from advisor.analysis.refused import without_refused
 from advisor.analysis.whole_flights import Axis, read_whole
 from advisor.campaign.hand_decisions import ByHand

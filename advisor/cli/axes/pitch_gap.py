@@ -6,6 +6,7 @@ from functools import cached_property
 from pathlib import Path
 
 from advisor.analysis import gap as reading
+from advisor.analysis.gap_flights import GapFlights, maneuvers_of
 from advisor.campaign.hand_decisions import ByHand
 from advisor.cli.axes.axis_gap import AxisGap, Tell
 from advisor.cli.gap_asked import GapAsked
@@ -39,7 +40,7 @@ class PitchGap(AxisGap[Compared]):
         asked: GapAsked,
         by_hand: Sequence[ByHand],
         holdout: int | None,
-        flown: reading.GapFlights | None = None,
+        flown: GapFlights | None = None,
     ) -> None:
         super().__init__(asked)
         self._by_hand, self._holdout, self._flown = by_hand, holdout, flown
@@ -59,9 +60,9 @@ class PitchGap(AxisGap[Compared]):
         asked, read = self.asked, self.asked.read
         aircraft = asked.aircraft
         tell("reading for the proof", 0.0)
-        flown = reading.maneuvers_of(read.logs, aircraft, read.target_system, self._by_hand)
+        flown = maneuvers_of(read.logs, aircraft, read.target_system, self._by_hand)
         decided = [decided_on(log, read.no_marks) for log in named]
-        fresh = reading.maneuvers_of(named, aircraft, read.target_system, decided) if named else None
+        fresh = maneuvers_of(named, aircraft, read.target_system, decided) if named else None
         return prove(flown, fresh, aircraft, read.target_system, tell, asked.prior, compared)
 
     def improved(self, compared: Compared, diagnosis: Diagnosis) -> FlownModel:

@@ -52,12 +52,8 @@ def _seconds(columns: Sequence[Columns]) -> list[int]:
 
 def rows_between(columns: Sequence[Columns], first: int, past: int) -> list[Columns]:
     """Return the rows with ``first <= order < past``, without message types that have no such row."""
-    pieces = []
-    for c in columns:
-        i, j = np.searchsorted(c.order, [first, past])
-        if j > i:
-            pieces.append(cut(c, slice(int(i), int(j))))
-    return pieces
+    ends = ((c, np.searchsorted(c.order, [first, past]).tolist()) for c in columns)
+    return [cut(c, slice(i, j)) for c, (i, j) in ends if j > i]
 
 
 def _turning_points(c: Columns) -> list[int]:

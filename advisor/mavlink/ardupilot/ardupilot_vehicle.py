@@ -108,11 +108,10 @@ def _today(name: bytes) -> bytes:
 
 
 def _stick_functions(stored: Mapping[str, float]) -> dict[bytes, float]:
-    functions = {}
-    for parameter, (output, function) in _STICKS.items():
-        number = int(stored.get(parameter, output))
-        functions[f"SERVO{number}_FUNCTION".encode()] = float(function)
-    return functions
+    return {
+        f"SERVO{int(stored.get(parameter, output))}_FUNCTION".encode(): float(function)
+        for parameter, (output, function) in _STICKS.items()
+    }
 
 
 def version_fields(ver: RecordTable) -> dict[str, ArrayLike]:

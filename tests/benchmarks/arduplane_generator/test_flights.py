@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from advisor.aircraft_file.read import parse_aircraft
-from advisor.analysis.gap import maneuvers_of
+from advisor.analysis.gap_flights import maneuvers_of
 from benchmarks.ardupilot_plane import GRAVITY, MASS_KG, forces
 from benchmarks.arduplane_generator.airframe import DENSITY, FULL_RAD, Airframe, draw_airframe
 from benchmarks.arduplane_generator.cases import (

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.analysis.gap import GapFlights
+from advisor.analysis.gap_flights import GapFlights
 from advisor.exports.models.axes import prove_pitch as proof
 from advisor.exports.models.axes.prove_pitch import as_it_ended
 from advisor.exports.models.proof import lines_of, stays_of

@@ -8,7 +8,7 @@ import pytest
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft.controls import Elevator
-from advisor.analysis.gap import maneuvers_of
+from advisor.analysis.gap_flights import maneuvers_of
 from advisor.flight.elevator.elevator_sign import SAID, ElevatorSign, answers_backwards, turned
 from advisor.flight.stream.stream import FlightStream
 from advisor.flight.vehicle.pieces import rows_between

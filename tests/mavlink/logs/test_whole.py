@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.analysis.gap import maneuvers_of
+from advisor.analysis.gap_flights import maneuvers_of
 from advisor.analysis.log_series import LogSeries
 from advisor.flight.maneuvers.events import (
     READER_NOTICE,

@@ -9,7 +9,8 @@ import numpy as np
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft_file.read import parse_aircraft
-from advisor.analysis.gap import GapFlights, compare_flown, opened_simulator
+from advisor.analysis.gap import compare_flown, opened_simulator
+from advisor.analysis.gap_flights import GapFlights
 from advisor.exports.models.flown import FlownModel, file_of, improved_model
 from advisor.exports.models.formats.jsbsim_format import FORMAT as JSBSIM
 from advisor.exports.models.proof import (
