@@ -1,17 +1,12 @@
 """Conversion of elevator movements to manoeuvres with their channels, or to activities with reasons."""
 
 from collections import Counter
-from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 from math import ceil
 
-import numpy as np
-
 from advisor.aircraft.aircraft import Aircraft
 from advisor.flight.elevator.elevator_sign import ElevatorSign, turned
-from advisor.flight.instruments.axes.side_instruments import examine_side
-from advisor.flight.instruments.examination import examine
 from advisor.flight.instruments.examined import ExaminedRecords
 from advisor.flight.instruments.measured import Evidence
 from advisor.flight.maneuvers.announced import PITCH_KINDS, SIDE_KINDS
@@ -28,19 +23,13 @@ from advisor.flight.maneuvers.binned import HISTORY_S
 from advisor.flight.maneuvers.events import Activity, FlightEvent, ManeuverFlown, Notice, SideManeuverFlown
 from advisor.flight.maneuvers.ground import why_on_ground
 from advisor.flight.maneuvers.loop import PITCH, ROLL, YAW, Loop
-from advisor.flight.maneuvers.maneuver import BEFORE_S, CONTROLS, Maneuver, Span
+from advisor.flight.maneuvers.maneuver import Maneuver, Span
 from advisor.flight.maneuvers.markers import marked_span
 from advisor.flight.maneuvers.marks import Mark, Marks
 from advisor.flight.maneuvers.purpose import Because, judged
 from advisor.flight.maneuvers.steady_speed import at_steady_speed
-from advisor.flight.signals.motion import along_heading
-from advisor.flight.signals.record import AIR_UNITS, UNITS, Channel
-from advisor.flight.signals.renewal import counted_once
-from advisor.flight.signals.repair import repaired
-from advisor.flight.signals.tracks import Tracks
-from advisor.flight.signals.trust import Distrust, distrusted
-from advisor.flight.stream.identity import Identity
-from advisor.flight.vehicle.breaks import Breaks
+from advisor.flight.signals.record import Channel
+from advisor.flight.stream.maneuver_records import ManeuverRecords
 from advisor.flight.vehicle.modes import closes_pitch_loop
 
 _EDGE_S = 0.5
@@ -51,22 +40,13 @@ class Cutting:
     """Cutter of manoeuvres from the tracks of one vehicle."""
 
     def __init__(
-        self,
-        tracks: Tracks,
-        who: Identity,
-        aircraft: Aircraft,
-        breaks: Breaks,
-        marks: Marks,
-        lateral: bool = False,
+        self, records: ManeuverRecords, aircraft: Aircraft, marks: Marks, lateral: bool = False
     ) -> None:
-        self._tracks, self._who, self._limits, self._breaks = tracks, who, aircraft.limits, breaks
-        self._marks = marks
+        self.records, self._tracks = records, records.tracks
+        self._limits, self._marks = aircraft.limits, marks
         self._sign = None if aircraft.elevator.is_calibrated else ElevatorSign()
-        self._modes = [(-np.inf, who.mode)]
-        self._released = (0, -np.inf)
         self._lateral = lateral
-        self.pitch, self.sideways = ExaminedRecords(examine), ExaminedRecords(examine_side)
-        """Manoeuvres of the elevator, and those of aileron and rudder."""
+        self.pitch, self.sideways = records.pitch, records.sideways
         self.activities: Counter[str] = Counter()
         """Number of movements that were no test inputs, by their description."""
         self.side_due: list[SideStretch] = []
@@ -85,20 +65,14 @@ class Cutting:
 
     def begin(self, mode: str) -> None:
         """Forget all manoeuvres, and begin a power-on in a flight mode."""
-        self._modes = [(-np.inf, mode)]
+        self.records.begin(mode)
         self.side_due.clear()
         self._claimed.clear()
         self._tests.clear()
-        self.pitch.begin()
-        self.sideways.begin()
-
-    def change(self, mode: str, since_s: float) -> None:
-        """Begin another flight mode."""
-        self._modes.append((since_s, mode))
 
     def so_far(self, span: Span, boot: int) -> Maneuver | None:
         """Return the manoeuvre if the movement ended now; None if its finished input is no test input."""
-        maneuver, _ = self._cut(span, boot, None, grows=True)
+        maneuver, _ = self.records.of_pitch(span, boot, None, grows=True)
         if span.input_is_over:
             at = (boot, span.start_s, span.last_step_s, ceil(span.end_s))
             if self._passed_over[0] != at:
@@ -109,21 +83,21 @@ class Cutting:
 
     def flown(self, span: Span, boot: int, up_to_order: int | None) -> list[FlightEvent]:
         """Return the event of a finished movement: a manoeuvre, or an activity with its reason."""
-        maneuver, evidence = self._cut(span, boot, up_to_order)
+        maneuver, evidence = self.records.of_pitch(span, boot, up_to_order)
         verdict = self._judged(maneuver, up_to_order)
         if isinstance(verdict, Because):
             return [self._activity(maneuver, verdict)]
         if verdict is not span:
             span = verdict
-            maneuver, evidence = self._cut(span, boot, up_to_order)
+            maneuver, evidence = self.records.of_pitch(span, boot, up_to_order)
         if self._lateral and (sides := self._beside(span, up_to_order)):
             joint = self._claim(span, SideInput(sides), boot, up_to_order)
             if joint is not None:
-                return self._counted(*self._cut(joint, boot, up_to_order))
+                return self._counted(*self.records.of_pitch(joint, boot, up_to_order))
         airspeed = maneuver.channels.get("airspeed")
         steady = at_steady_speed(maneuver.span, airspeed, self._limits.airspeed_change_percent)
         if steady is not maneuver.span:
-            maneuver, evidence = self._cut(steady, boot, up_to_order)
+            maneuver, evidence = self.records.of_pitch(steady, boot, up_to_order)
         return self._counted(maneuver, evidence)
 
     def _beside(self, span: Span, up_to_order: int | None) -> tuple[SideMovement, ...]:
@@ -142,7 +116,9 @@ class Cutting:
         """
         joint = at_once(span, SideInput((SideMovement(PITCH, span), *side_input.movements)))
         sideways = replace(joint, kind=named(side_input), steps=side_input.main.span.steps)
-        if self.is_no_side_input(self.side(sideways, boot, up_to_order)[0], side_input, up_to_order):
+        if self.is_no_side_input(
+            self.records.of_sides(sideways, boot, up_to_order)[0], side_input, up_to_order
+        ):
             return None
         stretch = SideStretch(up_to_order, sideways, side_input, boot)
         self.side_due.append(stretch)
@@ -159,7 +135,7 @@ class Cutting:
 
     def side_events(self, stretch: SideStretch) -> list[FlightEvent]:
         """Return the event of a stretch of aileron and rudder; empty where the stretch is no test input."""
-        maneuver, evidence = self.side(stretch.span, stretch.boot, stretch.order)
+        maneuver, evidence = self.records.of_sides(stretch.span, stretch.boot, stretch.order)
         if stretch.swept and self.is_no_side_input(maneuver, stretch.side_input, stretch.order):
             return []
         return self.side_counted(maneuver, evidence)
@@ -175,7 +151,7 @@ class Cutting:
         said = mark.announced
         if said is not None and (no_test := said.no_test(mark.end_s - mark.start_s)) is not None:
             return [self._listed(mark.start_s, mark.end_s, Because(*no_test), boot)]
-        mark = mark.until(self._leaves_s(mark.end_s))
+        mark = mark.until(self.records.leaves_s(mark.end_s))
         spans = {
             loop: marked_span(mark, self._tracks.cut(loop.control, *mark.reach, up_to_order))
             for loop in (PITCH, ROLL, YAW)
@@ -199,7 +175,7 @@ class Cutting:
         if not sides or len(sides) < len(moved):
             if sides:
                 pitching = at_once(pitching, SideInput(moved))
-            maneuver, evidence = self._cut(pitching, boot, up_to_order)
+            maneuver, evidence = self.records.of_pitch(pitching, boot, up_to_order)
             because = self._not_an_input(maneuver, up_to_order) if swept else None
             events += (
                 self._counted(maneuver, evidence) if because is None else [self._activity(maneuver, because)]
@@ -233,13 +209,13 @@ class Cutting:
     def _listed(self, start_s: float, end_s: float, because: Because, boot: int) -> Activity:
         """Return the event of a stretch that was no test input, and count the event."""
         self.activities[because.what] += 1
-        stay_s, _ = self._stay(0.5 * (start_s + end_s))
+        stay_s, _ = self.records.stay(0.5 * (start_s + end_s))
         return Activity(start_s, end_s, because.reason, because.text, stay_s, boot)
 
     def _counted(self, maneuver: Maneuver, evidence: Evidence) -> list[FlightEvent]:
         news = _news(maneuver, evidence, self.pitch)
         self._tests.setdefault(PITCH.control, []).append(maneuver.span)
-        self._released = (maneuver.boot, maneuver.span.end_s)
+        self.records.release(maneuver)
         if self._sign is None or "elevator" not in maneuver.channels:
             return [*news, ManeuverFlown(maneuver)]
         maneuver, notices = self._sign.right(maneuver)
@@ -257,72 +233,13 @@ class Cutting:
         span = maneuver.span
         motion = self.motion_before(span, PITCH, up_to_order)
         on_ground = self.why_on_ground(span, up_to_order)
-        tests, passed_over = (
-            self._tests.get(PITCH.control, ()),
-            self._marks.script_passes_over(span, up_to_order),
-        )
+        tests = self._tests.get(PITCH.control, ())
+        passed_over = self._marks.script_passes_over(span, up_to_order)
         return judged(maneuver, on_ground, motion, self._limits, PITCH, tests, passed_over=passed_over)
 
     def pilot_flies(self, at_s: float) -> bool:
         """Return whether the pilot moves the elevator at this time, according to the flight mode."""
-        return not closes_pitch_loop(self._stay(at_s)[1])
-
-    def _stay(self, at_s: float) -> tuple[float, str]:
-        """Return the start of the vehicle's stay in its flight mode at this time, and the mode."""
-        return next(stay for stay in reversed(self._modes) if stay[0] <= at_s)
-
-    def _leaves_s(self, after_s: float) -> float:
-        """Return the first time after ``after_s`` at which the flight mode may have changed, s since boot."""
-        return max(min((since_s for since_s, _ in self._modes if since_s > after_s), default=np.inf), after_s)
-
-    def _cut(
-        self, span: Span, boot: int, up_to_order: int | None, grows: bool = False
-    ) -> tuple[Maneuver, Evidence]:
-        """Return the manoeuvre, with its evidence about the instruments.
-
-        The instruments of a record that ``grows`` are examined now and then, not at every sample.
-        """
-        earlier_boot, earlier_s = self._released
-        if earlier_boot == boot and earlier_s > span.record_from_s:
-            # The lead-in does not reach into the record of another manoeuvre.
-            span = replace(span, record_from_s=min(earlier_s, span.start_s))
-        channels, notes = self._recorded(span, up_to_order)
-        distrusts = self._who.distrusts(distrusted(channels))
-        trusted = _trusted(channels, distrusts)
-        maneuver, evidence = self._examined(self.pitch, span, boot, up_to_order, trusted, notes, grows)
-        maneuver = replace(
-            maneuver,
-            distrusts=tuple(distrusts),
-            missed_s=self._breaks.missed_s(span.record_from_s, span.end_s),
-            leapt_s=self._breaks.leapt_s(span.record_from_s, span.end_s),
-            scale=counted.scale if (counted := self._who.outputs.counted.get("elevator")) else None,
-        )
-        return self._who.outputs.rescaled(maneuver), evidence
-
-    def side(self, span: Span, boot: int, up_to_order: int | None) -> tuple[Maneuver, Evidence]:
-        """Return the record of a lateral manoeuvre, with its evidence about the instruments."""
-        return self._examined(self.sideways, span, boot, up_to_order, *self._recorded(span, up_to_order))
-
-    def _examined(
-        self,
-        axis: ExaminedRecords,
-        span: Span,
-        boot: int,
-        up_to_order: int | None,
-        channels: Mapping[str, Channel],
-        notes: Sequence[str],
-        grows: bool = False,
-    ) -> tuple[Maneuver, Evidence]:
-        """Return the next manoeuvre of an axis from its recorded channels, with its evidence."""
-        length = (span.record_from_s, span.end_s)
-        examined = axis.so_far(channels, *length) if grows else axis.examined(channels)
-        recorded = {**examined.channels, **self._air(span, up_to_order)}
-        mode = self._stay(_middle_s(span))[1]
-        maneuver = Maneuver(
-            axis.counted + 1, boot, span, recorded, mode, findings=examined.findings, data_notes=tuple(notes),
-            before=self._before(recorded, span.record_from_s, up_to_order),
-        )  # fmt: skip
-        return maneuver, examined.evidence
+        return not closes_pitch_loop(self.records.stay(at_s)[1])
 
     def side_counted(self, maneuver: Maneuver, evidence: Evidence) -> list[FlightEvent]:
         """Return the event of a lateral manoeuvre, after notices about its instruments."""
@@ -338,74 +255,9 @@ class Cutting:
         cut = {name: self._tracks.cut(name, from_s, span.end_s, up_to_order) for name in names}
         return {name: channel for name, channel in cut.items() if channel is not None}
 
-    def _recorded(self, span: Span, up_to_order: int | None) -> tuple[dict[str, Channel], list[str]]:
-        """Return the repaired channels of a record, and sentences about the repairs."""
-        channels: dict[str, Channel] = {}
-        notes = self._airspeed_notes(span, up_to_order)
-        for name in UNITS:
-            channel = self._whole(name, span, up_to_order)
-            if channel is not None:
-                sound = repaired(counted_once(self._who.identified(channel)))
-                channels[name] = sound.channel
-                notes += sound.said
-        return channels, notes
-
-    def _before(
-        self, recorded: Mapping[str, Channel], record_from_s: float, up_to_order: int | None
-    ) -> dict[str, Channel]:
-        """Return the commands before a record, from the same sources as in the record."""
-        commands = {}
-        for name in recorded.keys() & set(CONTROLS):
-            until_s = np.nextafter(recorded[name].t[0], -np.inf)
-            before = self._tracks.cut(name, record_from_s - BEFORE_S, until_s, up_to_order)
-            if before is not None and before.source == recorded[name].source:
-                commands[name] = repaired(counted_once(before)).channel
-        return commands
-
-    def _air(self, span: Span, up_to_order: int | None) -> dict[str, Channel]:
-        """Return the channels of a record for the air density and the wind."""
-        cut = {name: self._whole(name, span, up_to_order) for name in AIR_UNITS}
-        air_channels = {name: air for name, air in cut.items() if air is not None}
-        north, east, heading = (
-            self._whole(name, span, up_to_order) for name in ("wind_north", "wind_east", "heading")
-        )
-        if north is None or east is None or heading is None:
-            return air_channels
-        return air_channels | along_heading(north, east, heading)
-
-    def _whole(self, name: str, span: Span, up_to_order: int | None) -> Channel | None:
-        return self._tracks.cut(name, span.record_from_s, span.end_s, up_to_order)
-
-    def _airspeed_notes(self, span: Span, up_to_order: int | None) -> list[str]:
-        """Return sentences about an air speed without a sensor."""
-        if self._who.airspeed_doubt:
-            return [self._who.airspeed_doubt]
-        if self._tracks.speeds_are_one(span.record_from_s, span.end_s, up_to_order):
-            return [
-                "Air speed and ground speed are equal in every sample, so one of them is copied from the "
-                "other. "
-                "If no sensor measured the air speed, wind makes the derivatives wrong."
-            ]
-        return []
-
 
 def _news(maneuver: Maneuver, evidence: Evidence, axis: ExaminedRecords) -> list[Notice]:
     """Count a manoeuvre of an axis, and return a notice for every new contradiction of its instruments."""
     codes = {f.code for f in axis.findings}
     axis.count(evidence, maneuver.findings)
     return [Notice(f.code, str(f.problem)) for f in maneuver.findings if f.code not in codes]
-
-
-def _trusted(channels: Mapping[str, Channel], distrusts: Sequence[Distrust]) -> dict[str, Channel]:
-    """Return the channels without distrusted ones that an estimate does not need."""
-    left_out = {distrust.channel for distrust in distrusts if distrust.left_out}
-    kept = {name: channel for name, channel in channels.items() if name not in left_out}
-    if "a_z" in left_out and "alpha" in kept and kept["alpha"].provenance == "derived":
-        # Nothing computes an angle of attack from an accelerometer that stands still.
-        kept["alpha"] = replace(kept["alpha"], provenance="unknown")
-    return kept
-
-
-def _middle_s(span: Span) -> float:
-    """Return the movement's middle time, s, because a new flight mode arrives up to two seconds late."""
-    return 0.5 * (span.start_s + span.end_s)

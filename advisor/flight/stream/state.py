@@ -27,6 +27,7 @@ from advisor.flight.stream.decoding import AskedSources
 from advisor.flight.stream.elevator_path import ElevatorPath
 from advisor.flight.stream.identity import Identity
 from advisor.flight.stream.instrument_watch import InstrumentWatch
+from advisor.flight.stream.maneuver_records import ManeuverRecords
 from advisor.flight.stream.service import Service
 from advisor.flight.stream.suitability import problems, with_guess
 from advisor.flight.stream.vehicle_texts import VehicleTexts
@@ -77,7 +78,9 @@ class StreamState:
         identity = ScriptIdentity.of(aircraft)
         self.marks = Marks(marks, None if identity == ScriptIdentity.of(Aircraft()) else identity)
         """Marks by hand, by a switch, by texts and by a script."""
-        self._cutting = Cutting(self.tracks, self._who, aircraft, self._breaks, self.marks, lateral)
+        self._cutting = Cutting(
+            ManeuverRecords(self.tracks, self._who, self._breaks), aircraft, self.marks, lateral
+        )
         self._mixing = Mixing(self.tracks)
         self._markers = MarkerWatch(aircraft.markers)
         self._path = ElevatorPath(self.tracks, self._mixing, self.marks, self._cutting)

@@ -112,7 +112,7 @@ class FlightStream(StreamState):
                 # A pilot who takes over and flies an input at once did so before the heartbeat that reports
                 # the mode.
                 closed = closes_pitch_loop(self._who.mode)
-                self._cutting.change(self._who.mode, self._master_s if closed else earliest_s)
+                self._cutting.records.change(self._who.mode, self._master_s if closed else earliest_s)
             else:
                 self._cutting.begin(self._who.mode)
         mine = [c for c in piece if c.system == vehicle.system]

@@ -135,7 +135,7 @@ class SidePath:
         least_rad = BESIDE * side_input.main.amplitude
         self._pending = [m for m in self._pending if m.span.start_s >= span.end_s or m.amplitude >= least_rad]
         span = self._marks.before(span)
-        maneuver, evidence = self._cutting.side(span, self._boot, up_to_order)
+        maneuver, evidence = self._cutting.records.of_sides(span, self._boot, up_to_order)
         if (
             self._marks.holds(span)
             or self._cutting.claims(span, up_to_order)
