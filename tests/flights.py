@@ -39,6 +39,15 @@ def recorded(
 
 
 @cache
+def calm_two() -> Path:
+    """The first two of the seven manoeuvres of ArduPlane's calm flight."""
+    path = FOLDER / "arduplane-two.tlog"
+    whole = (SHIPPED / "arduplane-calm.tlog").read_bytes()
+    path.write_bytes(whole[: len(whole) // 3])
+    return path
+
+
+@cache
 def truth(aircraft: str) -> dict[str, float]:
     """The eight parameters as the simulator linearises its own aircraft."""
     return dict(Flight(Scenario(aircraft=aircraft)).engine.truth.as_dict())

@@ -10,7 +10,7 @@ from click.testing import CliRunner
 
 from advisor.aircraft.reference import PARAMETERS
 from advisor.cli.group import advisor
-from tests.flights import FOUR, SHIPPED, TWO, recorded, truth
+from tests.flights import FOUR, SHIPPED, TWO, calm_two, recorded, truth
 from tests.recorded import use_recorded
 
 # The same few flights, analysed once for all that is said of them.
@@ -34,14 +34,6 @@ def analyze(log: Path, *options: str) -> str:
 def analyzed(log: Path, *options: str) -> dict[str, Any]:
     document: dict[str, Any] = json.loads(analyze(log, "--json", *options))
     return document
-
-
-@pytest.fixture(scope="module")
-def two_of_seven(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The first two manoeuvres of a flight that nobody here simulated."""
-    log, whole = tmp_path_factory.mktemp("real") / "two.tlog", (SHIPPED / "arduplane-calm.tlog").read_bytes()
-    log.write_bytes(whole[: len(whole) // 3])
-    return log
 
 
 @pytest.fixture(scope="module")
@@ -90,10 +82,8 @@ def test_the_nonlinear_aircraft_gives_its_own_linearisation_within_5_percent(par
     assert model[parameter]["value"] == pytest.approx(truth("uav")[parameter], rel=0.05)
 
 
-def test_a_flight_that_nobody_here_simulated_gives_judged_manoeuvres_and_a_model(
-    two_of_seven: Path, uav: Path
-) -> None:
-    document = analyzed(two_of_seven, "--aircraft", str(uav))
+def test_a_flight_that_nobody_here_simulated_gives_judged_manoeuvres_and_a_model(uav: Path) -> None:
+    document = analyzed(calm_two(), "--aircraft", str(uav))
     flown = [82.28, 113.34]
     assert [m["start_boot_s"] for m in document["maneuvers"]] == pytest.approx(flown, abs=1.0)
     assert document["log"]["channels"]["alpha"]["provenance"] == "derived"

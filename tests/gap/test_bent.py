@@ -7,33 +7,7 @@ from advisor.aircraft.aircraft import Aircraft
 from advisor.gap.candidates.catalogue import variants_for
 from advisor.gap.records.prepare import prepare
 from advisor.gap.simulator.layout import ENTRIES, INDEX
-from tests.gap.diagnosed import diagnose
 from tests.gap.generator import UAV, Setup, fly
-
-pytestmark = pytest.mark.study
-"""Whole diagnoses, run by ``make study-gap``."""
-
-
-@pytest.mark.parametrize(
-    ("effect", "switches", "speed_change"),
-    [
-        ("nonlinear_pitching_moment", {"cm_a2": 3.0}, 0.15),
-        pytest.param("nonlinear_pitching_moment", {"cm_a3": -80.0}, 0.22, marks=pytest.mark.study),
-        pytest.param("nonlinear_lift", {"cl_a3": -150.0}, 0.15, marks=pytest.mark.study),
-    ],
-)
-@pytest.mark.parametrize("about_rad", [0.08, None])
-def test_what_bends_about_one_angle_or_about_each_trim_is_one_effect_at_all_speeds(
-    effect, switches, speed_change, about_rad
-):
-    about = {} if about_rad is None else {"bends_about": about_rad}
-    setup = Setup(
-        maneuvers=8, speed_change=speed_change, seed=int(100 * speed_change), switches=switches | about
-    )
-    found = diagnose(fly(setup), Aircraft())
-    assert found.verdict == "effect"
-    assert [c.effect for c in found.causes if c.present] == [effect]
-    assert found.gap.after < 0.1 * found.gap.before
 
 
 def test_the_same_curve_about_another_angle_is_the_same_moment():

@@ -16,7 +16,6 @@ from sim.effects.fitting import flight_of
 from sim.record import record
 from sim.scenario import read_scenario
 from tests.flights import FOLDER
-from tests.gap.diagnosed import diagnose
 from tests.gap.generator import Setup, fly
 
 UAV = """
@@ -40,18 +39,6 @@ def two_flown(how):
 def test_a_command_is_read_as_it_was_flown(flown):
     problem, _ = fit_baseline(prepare(two_flown(flown), Aircraft()), Aircraft())
     assert problem.held == (flown == "held")
-
-
-@pytest.mark.study
-@pytest.mark.parametrize("flown", ["held", "linear"])
-def test_a_servo_that_moves_no_faster_is_named_alone_whichever_way_its_command_was_flown(tmp_path, flown):
-    limited = f"{UAV}input: {flown}\neffects: {{actuator_rate_limit: {{rate_rad_s: 0.7}}}}\n"
-    (tmp_path / "uav.yaml").write_text(limited)
-    record(flight_of(read_scenario(tmp_path / "uav.yaml")), tmp_path / "uav.tlog")
-    found = diagnose(maneuvers_of([tmp_path / "uav.tlog"], Aircraft()).maneuvers, Aircraft())
-    (cause,) = [c for c in found.causes if c.present]
-    assert cause.effect == "actuator_rate_limit"
-    assert cause.parameters["rate_rad_s"].value == pytest.approx(0.7, rel=0.06)
 
 
 @pytest.mark.parametrize("seed", [1, pytest.param(2, marks=pytest.mark.study)])

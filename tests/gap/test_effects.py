@@ -12,6 +12,7 @@ from advisor.gap.candidates.catalogue import variants_for
 from advisor.gap.candidates.known import with_known
 from advisor.gap.effects import EFFECTS
 from advisor.gap.inference.posterior import stated_as
+from advisor.gap.kit.changes_between import shift_moments
 from advisor.gap.kit.effect import ANY, BLOCKS, Effect
 from advisor.gap.kit.variant import Variant
 from advisor.gap.records.prepare import prepare
@@ -126,3 +127,13 @@ def test_every_effect_that_some_manoeuvres_show_is_flown_in_more_of_them():
         p[:, [INDEX[name] for name in DERIVATIVES]] = list(NUMBERS.values())
         variant.apply(p, [0.01] * len(variant.names), every)
         assert np.all(np.isfinite(p)), variant.effect
+
+
+def test_a_wandering_centre_of_gravity_gives_every_force_the_same_further_arm():
+    believed, p = np.array([-4.3, -0.03, -0.28, -37.0, -4.8, -52.0]), np.zeros((2, len(ENTRIES)))
+    p[:, :6] = believed
+    shift_moments(p, np.array([0.0, -0.2]))
+    changes = (p[1] - p[0])[[INDEX["M_alpha"], INDEX["M_q"], INDEX["M_delta_e"]]]
+    forces = believed[[0, 1, 2]]
+    assert changes[0] == pytest.approx(-0.2 * believed[3])
+    assert changes / forces == pytest.approx(np.full(3, changes[0] / forces[0]))

@@ -34,18 +34,6 @@ def test_one_manoeuvre_shows_whether_its_channels_agree(once):
     assert once.kinematics.finding == "consistent"
 
 
-@pytest.mark.study
-def test_one_manoeuvre_that_the_simulator_flies_alike_shows_no_gap():
-    assert diagnose(fly(Setup(maneuvers=3, seed=4))[:1], Aircraft(model=MODEL)).verdict == "none"
-
-
-@pytest.mark.study
-def test_two_manoeuvres_tell_the_cause_and_how_little_they_are():
-    found = diagnose(fly(Setup(maneuvers=2, switches={"delay": 0.06}, seed=3)), Aircraft(model=MODEL))
-    assert found.causes[0].effect == "transport_delay"
-    assert any("Only 2 manoeuvres" in note for note in found.notes)
-
-
 def test_without_a_manoeuvre_nothing_is_said():
     with pytest.raises(UnusableInputError, match="No usable manoeuvre"):
         diagnose([], Aircraft())

@@ -10,6 +10,7 @@ from advisor.gap.candidates.catalogue import variants_for
 from advisor.gap.fitting.fit import fit
 from advisor.gap.fitting.linear import linearise
 from advisor.gap.fitting.neighbourhood import Neighbourhood
+from advisor.gap.fitting.prior import ERROR_IF_WRONG, prior_precision
 from advisor.gap.fitting.problem import EffectProblem, SearchPoint, row_weights
 from advisor.gap.fitting.step import own_eliminated
 from advisor.gap.records.prepare import prepare
@@ -17,6 +18,7 @@ from advisor.gap.result import Cause, Value
 from advisor.gap.search.baseline import fit_baseline
 from advisor.gap.simulator.layout import ENTRIES, INDEX, OUTPUTS
 from advisor.gap.verdict.causes import with_model_errors
+from advisor.oem.arrow import solved_within
 from tests.gap.generator import Setup, fly
 
 
@@ -186,3 +188,18 @@ def test_a_manoeuvres_own_numbers_act_as_they_do_in_flight_where_the_moment_bend
         moved = replace(at, own=at.own + step * np.eye(4)[k])
         answer = (problem.fly_and_read(flight, problem.driving(moved)[:1])[:, 0] - read) / step
         np.testing.assert_allclose(own[:, k], answer, rtol=1e-6, atol=1e-9)
+
+
+def test_a_number_at_its_bound_leaves_the_others_at_their_best_beside_it():
+    H, g = np.array([[2.0, 1.9], [1.9, 2.0]]), np.array([1.0, -1.0])
+    free = np.linalg.solve(H, g)
+    assert solved_within(H, g, np.full(2, -100.0), np.full(2, 100.0)) == pytest.approx(free)
+    bounded = solved_within(H, g, np.array([-100.0, -100.0]), np.array([3.0, 100.0]))
+    assert bounded == pytest.approx([3.0, (g[1] - H[1, 0] * 3.0) / H[1, 1]])
+
+
+@pytest.mark.parametrize("which", [*range(6), slice(None)])
+def test_a_derivative_of_nothing_in_the_file_has_a_size_that_can_be_weighed(which):
+    believed = np.array([-4.3, -0.03, -0.28, -37.0, -4.8, -52.0])
+    believed[which] = 0.0
+    assert np.all(np.isfinite(prior_precision(believed, ERROR_IF_WRONG)))

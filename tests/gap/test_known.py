@@ -6,9 +6,7 @@ import numpy as np
 import pytest
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.aircraft.controls import Elevator
 from advisor.aircraft_file.effects import mistakes_in
-from advisor.aircraft_file.read import parse_aircraft
 from advisor.gap.candidates.catalogue import variants_for
 from advisor.gap.candidates.known import beyond_known, changes_in, together, with_known
 from advisor.gap.effects import EFFECTS
@@ -17,51 +15,13 @@ from advisor.gap.records.prepare import prepare
 from advisor.gap.search.baseline import fit_unfiltered, of_this_flight
 from advisor.gap.simulator.layout import ENTRIES, INDEX
 from advisor.gap.verdict.causes import parameters_of
-from advisor.report.improved import improved_file
 from sim.effects.terms import problems_with
-from tests.gap.diagnosed import diagnose
 from tests.gap.generator import Setup, fly
 
 
 @pytest.fixture(scope="module")
 def late():
     return fly(Setup(maneuvers=6, switches={"delay": 0.06}, seed=21))
-
-
-@pytest.mark.study
-def test_a_delay_that_the_file_has_is_no_gap(late):
-    assert diagnose(late, Aircraft(effects={"transport_delay": {"delay_s": 0.06}})).verdict == "none"
-
-
-@pytest.mark.study
-@pytest.mark.parametrize(("in_file_s", "missing_s"), [(0.02, 0.04), (0.11, -0.05)])
-def test_of_a_delay_only_what_the_file_lacks_is_found(late, in_file_s, missing_s):
-    """The lack exceeds the 25 ms that telemetry may be late with stamps 20 ms apart."""
-    found = diagnose(late, Aircraft(effects={"transport_delay": {"delay_s": in_file_s}}))
-    assert [c.effect for c in found.causes if c.present] == ["transport_delay"]
-    assert found.causes[0].parameters["delay_s"].value == pytest.approx(missing_s, abs=0.003)
-
-
-@pytest.mark.study
-@pytest.mark.parametrize("in_file_s", [0.04, 0.08])
-def test_a_delay_of_the_file_that_is_off_by_less_than_telemetry_may_be_late_is_no_gap(late, in_file_s):
-    found = diagnose(late, Aircraft(effects={"transport_delay": {"delay_s": in_file_s}}))
-    assert found.verdict == "none"
-    assert not any(c.present for c in found.causes)
-
-
-@pytest.mark.study
-def test_an_offset_of_alpha_that_the_file_has_is_no_gap():
-    flown = fly(Setup(maneuvers=6, alpha_bias=0.02, seed=22))
-    assert diagnose(flown, Aircraft()).causes[0].effect == "alpha_bias"
-    assert diagnose(flown, Aircraft(effects={"alpha_bias": {"bias_rad": 0.02}})).verdict == "none"
-
-
-@pytest.mark.study
-def test_what_belongs_to_one_flight_is_left_aside_and_said_so(late):
-    found = diagnose(late, Aircraft(effects={"icing": {"Z_alpha": -0.2}, "gust": {"amplitude_m_s": 2.0}}))
-    assert found.causes[0].effect == "transport_delay"
-    assert any("icing, gust" in note and "not used" in note for note in found.notes)
 
 
 def test_numbers_of_the_file_become_the_simulations_own(late):
@@ -161,14 +121,6 @@ def test_a_dead_band_keeps_the_deflection_that_the_file_states_whatever_the_trim
     assert middles == pytest.approx(-0.02)
 
 
-@pytest.mark.study
-def test_a_dead_band_that_the_file_has_is_no_gap():
-    flown = fly(Setup(maneuvers=6, switches={"deadband": 0.012}, seed=7))
-    trim = float(np.median([flight.u_trim for flight in prepare(flown, Aircraft()).flights]))
-    stated = {"actuator_deadband": {"half_width_rad": 0.012, "neutral_rad": trim}}
-    assert diagnose(flown, Aircraft(effects=stated)).verdict == "none"
-
-
 def test_what_is_found_beyond_a_number_of_the_file_is_added_to_it():
     known = {"transport_delay": {"delay_s": 0.03}, "unsteady_lift": {"share": 0.3, "lag_s": 0.1}}
     found = {"transport_delay": {"delay_s": 0.02}, "alpha_scale": {"scale": 0.1}}
@@ -183,14 +135,6 @@ def test_what_is_found_beyond_one_number_leaves_the_files_others_as_they_are():
         {"thrust_moment": {"M_throttle": 1.0, "lag_s": 0.5}}, {"thrust_moment": {"M_throttle": 0.2}}
     )
     assert both["thrust_moment"] == pytest.approx({"M_throttle": 1.2, "lag_s": 0.5})
-
-
-@pytest.mark.study
-def test_of_a_late_channel_only_what_the_file_lacks_is_found():
-    flown = fly(Setup(maneuvers=6, skew={"alpha": 0.08}, seed=23))
-    found = diagnose(flown, Aircraft(effects={"alpha_skew": {"skew_s": 0.05}}))
-    assert found.causes[0].effect == "alpha_skew"
-    assert found.causes[0].parameters["skew_s"].value == pytest.approx(0.03, abs=0.004)
 
 
 def test_the_damping_of_a_servo_is_said_anew_and_its_lag_added():
@@ -213,35 +157,6 @@ def test_a_servo_is_searched_for_as_the_file_describes_it(late, known):
     servos = [v for v in left if v.effect == "actuator_lag"]
     assert [dict(v.fixed) for v in servos] == [{k: x for k, x in known.items() if k == "damping"}]
     assert servos[0].bounds[0][0] == -0.1
-
-
-@pytest.mark.study
-def test_too_much_of_an_effect_in_the_file_is_said_so():
-    slow = fly(Setup(maneuvers=6, switches={"lag": 0.05}, seed=21))
-    found = diagnose(slow, Aircraft(effects={"actuator_lag": {"lag_s": 0.1}}))
-    assert found.causes[0].parameters["lag_s"].value == pytest.approx(-0.05, abs=0.01)
-    assert "too slow: its servo lags by 5" in found.sentence
-
-
-@pytest.mark.study
-@pytest.mark.parametrize(
-    ("stated", "effect", "missing_s"),
-    [
-        (Elevator(lag_s=0.1), "actuator_lag", -0.05),
-        pytest.param(Elevator(lag_s=0.05, delay_s=0.04), "transport_delay", -0.04, marks=pytest.mark.study),
-    ],
-)
-def test_a_servo_may_be_quicker_than_the_file_states_and_the_improved_file_states_less(
-    stated, effect, missing_s
-):
-    slow = fly(Setup(maneuvers=6, switches={"lag": 0.05}, seed=21))
-    found = diagnose(slow, Aircraft(elevator=stated))
-    size = next(iter(found.causes[0].parameters.values())).value
-    assert (found.causes[0].effect, size) == (effect, pytest.approx(missing_s, abs=0.01))
-    improved = parse_aircraft(improved_file(found, Aircraft(elevator=stated)))
-    assert effect not in improved.effects
-    assert improved.elevator.lag_s == pytest.approx(0.05, abs=0.01)
-    assert diagnose(slow, improved).verdict == "none"
 
 
 def test_a_change_in_flight_of_the_file_scales_the_derivatives_after_it(late):

@@ -1,6 +1,5 @@
 """The air moves where a gust angle is large enough to be one."""
 
-from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
@@ -12,13 +11,12 @@ from advisor.gap.records.prepare import prepare
 from advisor.gap.search import air
 from advisor.gap.search.air import moving_air
 from advisor.gap.search.baseline import fit_baseline
-
-CALM = Path(__file__).parents[2] / "logs" / "arduplane-calm.tlog"
+from tests.flights import SHIPPED, calm_two
 
 
 def test_a_rest_of_the_model_that_gusts_imitate_is_no_cause():
-    aircraft = load_aircraft(CALM.with_suffix(".yaml"))
-    flights = prepare(maneuvers_of([CALM], aircraft).maneuvers, aircraft)
+    aircraft = load_aircraft(SHIPPED / "arduplane-calm.yaml")
+    flights = prepare(maneuvers_of([calm_two()], aircraft).maneuvers, aircraft)
     sought = moving_air(*fit_baseline(flights, aircraft))
     assert sought.gain > 30.0
     assert sought.found is None or sought.found.is_natural

@@ -4,7 +4,6 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from scipy.signal import lfilter
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.gap.candidates.catalogue import variants_for
@@ -17,11 +16,7 @@ from advisor.gap.search.baseline import fit_baseline
 from advisor.oem.driven_motion.noise import Noise
 from advisor.oem.short_period_motion import short_period_motion
 from advisor.oem.turbulence import Rows, cost_of
-from tests.gap.diagnosed import diagnose
 from tests.gap.generator import Setup, fly
-
-pytestmark = pytest.mark.study
-"""Whole diagnoses, run by ``make study-gap``."""
 
 SYSTEM = np.array([-4.3, -0.03, -37.0, -4.8])
 SPEED = 22.0
@@ -90,6 +85,7 @@ def test_air_that_moves_as_assumed_leaves_white_innovations():
         assert abs(one[1:] @ one[:-1] / (one @ one)) < 0.08
 
 
+@pytest.mark.study
 @pytest.mark.parametrize(("jitter", "channel"), [(0.0, "q"), (0.004, "q"), (0.004, "a_z")])
 def test_wrong_stamps_are_read_from_the_roughness_of_a_residual_and_uneven_ones_are_not_wrong(
     jitter, channel
@@ -106,6 +102,7 @@ def test_wrong_stamps_are_read_from_the_roughness_of_a_residual_and_uneven_ones_
     assert found == pytest.approx(jitter / np.sqrt(3.0), rel=0.25, abs=1e-4)
 
 
+@pytest.mark.study
 def test_a_gust_is_told_from_turbulence_by_the_manoeuvres_it_spared():
     flights = prepare(fly(Setup(maneuvers=6, gust_pulse=2.0, seed=12)), Aircraft())
     problem, _ = fit_baseline(flights, Aircraft())
@@ -116,6 +113,7 @@ def test_a_gust_is_told_from_turbulence_by_the_manoeuvres_it_spared():
     assert moving == [False, True, False, False, True, False]
 
 
+@pytest.mark.study
 def test_derivatives_are_right_although_a_gust_hit_every_third_manoeuvre():
     still = prepare(fly(Setup(maneuvers=6, seed=13)), Aircraft())
     gusty = prepare(fly(Setup(maneuvers=6, gust_pulse=2.0, seed=13)), Aircraft())
@@ -123,39 +121,13 @@ def test_derivatives_are_right_although_a_gust_hit_every_third_manoeuvre():
     assert spoilt.point.derivatives[3:] == pytest.approx(plain.point.derivatives[3:], rel=0.04)
 
 
+@pytest.mark.study
 def test_noise_without_a_filter_is_given_in_the_units_of_the_channels_whatever_was_thought_at_first():
     """Check that an unseen delay looks like moving air at first, and like white noise after the fit."""
     flown = fly(Setup(maneuvers=9, rate_hz=20.0, switches={"delay": 0.05}, seed=5))
     problem, fitted = fit_baseline(prepare(flown, Aircraft()), Aircraft())
     assert not problem.knows_the_noise
     assert np.all(fitted.noise < 2.0 * problem.instruments)
-
-
-def test_what_a_gyro_adds_in_every_manoeuvre_is_an_offset_and_no_slow_noise():
-    found = diagnose(fly(Setup(maneuvers=6, q_bias=0.02, noise=0.004, seed=61)), Aircraft())
-    assert found.causes[0].effect == "pitch_rate_bias"
-    assert found.causes[0].parameters["bias_rad_s"].value == pytest.approx(0.02, rel=0.1)
-
-
-def wandering(channel, share, memory_s, others=0.0):
-    """Return a flight in which an instrument wanders by a share of its largest motion, with a memory."""
-    flown = []
-    rng = np.random.default_rng(4)
-    for maneuver in fly(Setup(seed=12)):
-        channels = dict(maneuver.channels)
-        for name in ("alpha", "q", "a_z", "theta"):
-            read = channels[name]
-            size = (share if name == channel else others) * np.max(np.abs(read.y - read.y[0]))
-            decay = np.exp(-np.median(np.diff(read.t)) / memory_s)
-            course = lfilter([size * np.sqrt(1 - decay**2)], [1, -decay], rng.standard_normal(len(read.t)))
-            channels[name] = replace(read, y=read.y + course)
-        flown.append(replace(maneuver, channels=channels))
-    return flown
-
-
-@pytest.mark.parametrize(("share", "memory_s", "others"), [(0.06, 0.1, 0.0), (0.03, 1.0, 0.02)])
-def test_noise_that_is_quick_or_everywhere_is_noise(share, memory_s, others):
-    assert diagnose(wandering("q", share, memory_s, others), Aircraft()).verdict == "none"
 
 
 def gain_of_moving_air(late_s):
@@ -167,6 +139,7 @@ def gain_of_moving_air(late_s):
     return moving_air(problem, fit(problem, late, plain.noise, 20)).gain
 
 
+@pytest.mark.study
 def test_gusts_are_as_plain_to_a_vane_whose_stamps_are_late_or_early_as_to_any():
     on_time = gain_of_moving_air(0.0)
     assert on_time > 1000.0

@@ -27,7 +27,6 @@ from advisor.gap.simulator.layout import DERIVATIVES as DERIVATIVES_BY_NAME
 from advisor.gap.simulator.layout import SPEED
 from advisor.oem.instruments import COMMAND_DELAY
 from advisor.oem.prepare import prepare as prepare_estimate
-from tests.gap.diagnosed import diagnose
 from tests.gap.generator import Setup, fly
 
 FLOWN = fly(Setup(maneuvers=3, seed=71))
@@ -50,14 +49,6 @@ def test_the_delay_of_the_command_has_one_prior_in_estimate_and_diagnosis():
     assert latency(flights).prior_std == (lateness_std(stamps),)
     estimated = prepare_estimate(FLOWN, Aircraft()).problem
     assert COMMAND_DELAY.usual(estimated).std == lateness_std([r.elevator.t for r in estimated.records])
-
-
-@pytest.mark.parametrize(
-    ("delay_s", "named"), [(0.02, []), pytest.param(0.05, ["transport_delay"], marks=pytest.mark.study)]
-)
-def test_a_transport_delay_is_named_only_beyond_that_of_telemetry(delay_s, named):
-    found = diagnose(fly(Setup(maneuvers=4, switches={"delay": delay_s}, seed=72)), Aircraft())
-    assert [cause.effect for cause in found.causes if cause.present] == named
 
 
 def test_a_filter_that_a_parameter_states_is_taken_out_of_the_stamps():

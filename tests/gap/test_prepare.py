@@ -2,10 +2,13 @@
 
 from dataclasses import replace
 
+import numpy as np
 import pytest
+from scipy.signal import butter, lfilter, sosfiltfilt
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.gap.records.prepare import prepare
+from advisor.gap.records.smoothness import is_filtered, is_smoothed
 from tests.gap.generator import Setup, fly
 
 
@@ -35,3 +38,13 @@ def test_the_air_shows_in_the_angle_of_attack_or_in_the_specific_force(flown):
     measured = prepare(flown, Aircraft())
     for channels, shown in (("alpha", "q"), True), (("a_z", "q"), True), (("q", "theta"), False):
         assert replace(measured, channels=channels).shows_air is shown
+
+
+def test_a_record_filtered_on_the_ground_is_told_from_noise_and_from_moving_air():
+    rng = np.random.default_rng(3)
+    noise = rng.standard_normal(2000)
+    low_passed = sosfiltfilt(butter(4, 2.0, fs=50.0, output="sos"), noise)
+    air = lfilter([1.0], [1.0, -0.97], noise)
+    assert is_filtered([low_passed])
+    assert not is_filtered([noise])
+    assert not is_smoothed([air])

@@ -1,6 +1,5 @@
 """The air speed is a cause where work was done on the aircraft, not where it was exchanged for height."""
 
-import re
 from dataclasses import replace
 
 import numpy as np
@@ -12,28 +11,11 @@ from advisor.gap.candidates.catalogue import variants_for
 from advisor.gap.records.airspeed import airspeed_on, measures_speed
 from advisor.gap.records.prepare import prepare
 from advisor.gap.records.unmeasured_speed import speed_of_the_motion
-from advisor.gap.simulator.layout import HEIGHT, SPEED
+from advisor.gap.simulator.layout import SPEED
 from advisor.oem.airspeed import airspeed
-from tests.gap.diagnosed import diagnose
 from tests.gap.generator import UAV, Setup, fly
 
 HEIGHTS = (80.0, 90.0, 85.0)
-
-
-def flights_with(speed_of, height_of):
-    """Return three manoeuvres whose speed and height follow given courses of time."""
-    found = prepare(fly(Setup(maneuvers=3, heights_m=HEIGHTS)), Aircraft())
-    flights = []
-    for flight in found.flights:
-        t = (np.arange(flight.n) + 0.5) * flight.h
-        slow = flight.slow.copy()
-        slow[SPEED], slow[HEIGHT] = speed_of(t), height_of(t)
-        flights.append(replace(flight, slow=slow))
-    return replace(found, flights=tuple(flights))
-
-
-def phugoid(t):
-    return 22.0 + 2.0 * np.sin(0.6 * t)
 
 
 @pytest.mark.parametrize("share", [0.9, 1.1])
@@ -44,40 +26,6 @@ def test_a_speed_at_which_nothing_flies_is_none_to_estimator_and_diagnosis_alike
     maneuver = replace(flown, channels={**flown.channels, "airspeed": slow})
     assert measures_speed(maneuver) == (share > 1.0)
     assert (airspeed(maneuver.channels) is not None) == (share > 1.0)
-
-
-def throttled(**thrust):
-    return fly(Setup(maneuvers=6, logs_throttle=True, heights_m=HEIGHTS, seed=202, **thrust))
-
-
-@pytest.mark.study
-@pytest.mark.parametrize("engine_lag_s", [0.0, 0.6])
-def test_a_speed_that_follows_the_throttle_is_no_cause(engine_lag_s):
-    found = diagnose(throttled(thrust_amplitude=0.8, engine_lag_s=engine_lag_s), Aircraft())
-    assert found.verdict == "none"
-
-
-@pytest.mark.study
-def test_forces_that_do_not_grow_with_the_speed_squared_are_named_with_their_power():
-    setup = Setup(maneuvers=6, speed_change=0.12, switches={"speed_power": -0.8}, seed=8)
-    found = diagnose(fly(setup), Aircraft())
-    assert [c.effect for c in found.causes if c.present] == ["airspeed_variation"]
-    exponent = found.causes[0].parameters["exponent"]
-    assert abs(exponent.value + 0.8) < 2.5 * exponent.std
-    # The moments may have a power of their own.
-    assert re.search("with (its power )?1.2", found.sentence)
-    assert [effect for effect, _ in found.waterfall] == ["airspeed_variation"]
-
-
-@pytest.mark.study
-def test_moments_that_grow_with_another_power_than_the_lift_have_their_own():
-    setup = Setup(maneuvers=6, speed_change=0.12, switches={"moment_power": -1.5}, seed=8)
-    found = diagnose(fly(setup), Aircraft())
-    assert [c.effect for c in found.causes if c.present] == ["airspeed_variation"]
-    # Here the damping goes with that power, too.
-    assert found.causes[0].parameters["exponent_M"].value == pytest.approx(-1.5, abs=0.35)
-    assert found.causes[0].parameters["exponent"].value == pytest.approx(0.0, abs=0.25)
-    assert "moments grow with the air speed's power 0." in found.sentence
 
 
 def test_a_power_of_the_speed_is_not_looked_for_where_the_speed_hardly_moved():
@@ -108,69 +56,12 @@ def test_without_an_air_speed_in_the_log_the_motion_shows_it():
     assert speed_of_the_motion(flown) == pytest.approx(UAV.speed, rel=0.02)
 
 
-@pytest.mark.study
-def test_a_speed_that_the_motion_shows_serves_as_well_as_one_that_the_file_states():
-    flown = without_instrument(fly(Setup(maneuvers=6, switches={"delay": 0.06}, seed=51)))
-    shown, stated = (diagnose(flown, Aircraft(airspeed_m_s=v)) for v in (None, UAV.speed))
-    assert shown.gap.after == pytest.approx(stated.gap.after, abs=0.05)
-    assert any("No air speed in the log" in note for note in shown.notes)
-    assert [c.effect for c in shown.causes if c.present] == ["transport_delay"]
-
-
 def test_without_an_air_speed_in_the_log_the_motion_shows_how_the_manoeuvres_speeds_differ():
     logged = fly(Setup(maneuvers=8, speed_change=0.12, seed=52))
     flown = without_instrument(logged)
     measured = [f.slow[SPEED].mean() for f in prepare(logged, Aircraft()).flights]
     shown = [f.slow[SPEED].mean() for f in prepare(flown, Aircraft(airspeed_m_s=UAV.speed)).flights]
     assert np.array(shown) / np.mean(shown) == pytest.approx(np.array(measured) / np.mean(measured), abs=0.02)
-
-
-@pytest.mark.study
-@pytest.mark.parametrize(
-    ("off", "height_m", "verdict"),
-    [(0.95, 0.0, "none"), (1.03, 0.0, "none"), (0.86, 0.0, "unknown")],
-)
-def test_an_air_speed_that_is_not_quite_the_true_one_is_said_and_no_cause_where_thin_air_explains_it(
-    off, height_m, verdict
-):
-    read = []
-    for m in fly(Setup(maneuvers=6, speed_change=0.06, seed=53)):
-        true = m.channels["airspeed"]
-        height = replace(true, y=np.full(len(true.y), height_m))
-        indicated = replace(true, y=off * true.y)
-        read.append(replace(m, channels={**m.channels, "airspeed": indicated, "altitude": height}))
-    found = diagnose(read, Aircraft())
-    assert found.verdict == verdict
-    [said] = [note for note in found.notes if note.startswith("The motion shows a true air speed")]
-    assert float(said.split()[8]) == pytest.approx(100.0 / off - 100.0, abs=0.7)
-
-
-@pytest.mark.study
-def test_a_pitot_tube_that_reads_nothing_is_no_air_speed():
-    flown = fly(Setup(maneuvers=6, seed=8))
-    dead = [
-        replace(
-            m,
-            channels={
-                **m.channels,
-                "airspeed": replace(m.channels["airspeed"], y=0.0 * m.channels["airspeed"].y),
-            },
-        )
-        for m in flown
-    ]
-    none = [replace(m, channels={n: c for n, c in m.channels.items() if n != "airspeed"}) for m in flown]
-    found, without = diagnose(dead, Aircraft()), diagnose(none, Aircraft())
-    assert found.verdict == without.verdict == "none"
-    assert found.reference_airspeed_m_s == without.reference_airspeed_m_s
-    assert found.reference_airspeed_m_s == pytest.approx(22.0, rel=0.05)
-
-
-@pytest.mark.study
-def test_the_files_air_speed_counts_only_where_the_log_has_none():
-    found = diagnose(fly(Setup(maneuvers=6, seed=8)), Aircraft(airspeed_m_s=27.0))
-    assert found.verdict == "none"
-    assert found.kinematics.finding == "consistent"
-    assert found.reference_airspeed_m_s == pytest.approx(22.0, rel=0.05)
 
 
 @pytest.mark.parametrize(("amplitude_m_s", "follows"), [(0.4, False), (2.0, True)])

@@ -11,11 +11,7 @@ from advisor.gap.fitting.problem import EffectProblem, SearchPoint
 from advisor.gap.records.airspeed import speed_error_factors
 from advisor.gap.records.prepare import prepare
 from advisor.gap.simulator.layout import DERIVATIVES, ENTRIES, INDEX, SPEED
-from tests.gap.diagnosed import diagnose
 from tests.gap.generator import UAV, Setup, fly
-
-pytestmark = pytest.mark.study
-"""Whole diagnoses, run by ``make study-gap``."""
 
 
 def remembering(rng, n, memory):
@@ -74,24 +70,6 @@ def test_each_manoeuvre_has_three_numbers_for_it_where_it_was_measured_and_its_l
         problem = EffectProblem(prepare(some, Aircraft(airspeed_m_s=UAV.speed)), np.zeros(len(ENTRIES)))
         widths.append(linearise(problem, point)[0].own.shape[1])
     assert widths[0] - widths[1] == 2
-
-
-def noisy_speed(maneuver, rng, size_m_s, rate_hz=5.0):
-    """Return the manoeuvre with the air speed of a pressure port: seldom, and with correlated noise."""
-    speed = maneuver.channels["airspeed"]
-    t = np.arange(speed.t[0], speed.t[-1], 1.0 / rate_hz)
-    y = np.interp(t, speed.t, speed.y) + size_m_s * remembering(rng, len(t), 0.5)
-    return replace(maneuver, channels={**maneuver.channels, "airspeed": replace(speed, t=t, y=y)})
-
-
-def test_noise_of_the_air_speed_is_neither_turbulence_nor_a_change_of_mass():
-    rng = np.random.default_rng(7)
-    flown = [noisy_speed(m, rng, 0.3) for m in fly(Setup(maneuvers=6, seed=71))]
-    found = diagnose(flown, Aircraft())
-    assert found.verdict == "none"
-    assert [c.effect for c in found.causes if c.present] == []
-    # Ten times as much is left where the speed is taken as it is read.
-    assert found.gap.before < 0.1
 
 
 def test_readings_with_one_stamp_for_many_are_no_obstacle():

@@ -1,22 +1,10 @@
 """From the command to the surface: solved piece by piece, it is what small steps make of it."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 
-from advisor.aircraft.aircraft import Aircraft
-from advisor.analysis.gap_flights import maneuvers_of
 from advisor.gap.simulator.layout import EFFECT_ENTRIES, ENTRIES, INDEX
 from advisor.gap.simulator.surface import surface
-from sim.effects.fitting import flight_of
-from sim.record import record
-from sim.scenario import read_scenario
-from tests.gap.diagnosed import diagnose
-from tests.gap.generator import Setup, fly
-
-pytestmark = pytest.mark.study
-"""Whole diagnoses, run by ``make study-gap``."""
 
 H, SMALL, DURATION = 0.005, 2e-5, 0.8
 OF_THE_SURFACE = (
@@ -112,46 +100,6 @@ def test_a_surface_moves_from_its_trim_as_far_as_its_stops_and_no_further(held):
     assert np.min(found) >= -0.05 - 1e-12
 
 
-def test_a_dead_band_that_moves_with_the_trim_is_one_as_well():
-    rested_at = (0.0, 0.03, -0.02, 0.01, -0.03, 0.02)
-    flown = []
-    for maneuver, above in zip(fly(Setup(maneuvers=6, switches={"deadband": 0.012})), rested_at, strict=True):
-        command = maneuver.channels["elevator"]
-        shifted = replace(command, y=command.y + above)
-        flown.append(replace(maneuver, channels={**maneuver.channels, "elevator": shifted}))
-    found = diagnose(flown, Aircraft())
-    (cause,) = [c for c in found.causes if c.present]
-    assert cause.effect == "actuator_deadband"
-    assert cause.parameters["half_width_rad"].value == pytest.approx(0.012, rel=0.05)
-    assert "around its trim" in found.sentence
-
-
-def test_play_below_a_tenth_of_a_degree_has_a_name_in_a_quiet_record():
-    found = diagnose(fly(Setup(maneuvers=6, switches={"play": 0.0012}, noise=0.002, seed=71)), Aircraft())
-    (cause,) = [c for c in found.causes if c.present]
-    assert cause.effect == "actuator_backlash"
-    assert cause.parameters["half_width_rad"].value == pytest.approx(0.0012, rel=0.05)
-
-
-def test_a_dead_band_below_a_tenth_of_a_degree_has_none_in_noise():
-    loud = diagnose(fly(Setup(maneuvers=6, switches={"deadband": 0.0012}, noise=0.02, seed=71)), Aircraft())
-    assert not any(c.present for c in loud.causes)
-
-
-def test_a_servo_at_its_limit_is_no_later_for_steps_that_lie_anywhere_between_two_stamps(tmp_path):
-    limited = (
-        "aircraft: uav\nseed: 2\nloop_hz: 250\nunit_s: 0.36\n"
-        "noise: {alpha_deg: 0.03, pitch_rate_deg_s: 0.1, pitch_deg: 0.03, accelerometer_m_s2: 0.03}\n"
-        'maneuvers: ["3211", "rev", doublet, "rev", "3211"]\n'
-        "effects: {actuator_rate_limit: {rate_rad_s: 1.2}}\n"
-    )
-    (tmp_path / "uav.yaml").write_text(limited)
-    record(flight_of(read_scenario(tmp_path / "uav.yaml")), tmp_path / "uav.tlog")
-    found = diagnose(maneuvers_of([tmp_path / "uav.tlog"], Aircraft()).maneuvers, Aircraft())
-    (cause,) = [c for c in found.causes if c.present]
-    assert cause.effect == "actuator_rate_limit"
-
-
 @pytest.mark.parametrize("play", [0.0, 0.01])
 @pytest.mark.parametrize("held", [True, False])
 def test_a_command_before_the_record_moves_the_surface_until_it_begins(held: bool, play: float) -> None:
@@ -163,3 +111,27 @@ def test_a_command_before_the_record_moves_the_surface_until_it_begins(held: boo
     whole = surface(H, round((1.0 + DURATION) / H), t_u + 1.0, u, held, 0.0, p)
     found = surface(H, round(DURATION / H), t_u, u, held, 0.0, p)
     assert found == pytest.approx(whole[round(1.0 / H) :], abs=1e-9)
+
+
+def test_a_servo_of_second_order_trails_a_ramp_by_its_lag_and_overshoots_as_its_damping_says():
+    p = np.zeros(len(ENTRIES))
+    p[INDEX["lag_s"]], p[INDEX["lag_damping"]] = 0.1, 0.7
+    h, n = 0.001, 2000
+    ramp = surface(h, n, np.array([0.0, 10.0]), np.array([0.0, 10.0]), False, 0.0, p)
+    assert ramp[-1] == pytest.approx((n - 0.5) * h - 0.1, abs=1e-3)
+    step = surface(h, n, np.array([0.0, 0.1, 0.100001, 10.0]), np.array([0.0, 0.0, 1.0, 1.0]), False, 0.0, p)
+    assert step.max() - 1.0 == pytest.approx(np.exp(-np.pi * 0.7 / np.sqrt(1.0 - 0.7**2)), rel=0.02)
+
+
+def test_a_dead_band_off_the_trim_swallows_one_side_only():
+    p = np.zeros(len(ENTRIES))
+    p[INDEX["half_deadband_rad"]], p[INDEX["neutral_rad"]] = 0.01, 0.01
+    t = np.array([0.0, 0.4, 0.400001, 1.0])
+
+    def answer(level: float) -> float:
+        u = np.array([0.0, 0.0, level, level])
+        return float(surface(0.005, 200, t, u, False, 0.0, p)[-1])
+
+    assert answer(0.015) == pytest.approx(0.0)
+    assert answer(0.03) == pytest.approx(0.01)
+    assert answer(-0.02) == pytest.approx(-0.02)

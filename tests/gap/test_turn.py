@@ -3,36 +3,11 @@
 import numpy as np
 import pytest
 
-from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft.standard_gravity import GRAVITY_M_S2
 from advisor.flight.signals.derived_alpha import derived_alpha
 from advisor.flight.signals.motion import gravity_in_plane
-from tests.gap.diagnosed import diagnose
-from tests.gap.generator import Setup, fly
-
-pytestmark = pytest.mark.study
-"""Whole diagnoses, run by ``make study-gap``."""
 
 BANKS = (-8.0, 14.0, 3.0, -20.0, 25.0)
-
-
-def test_manoeuvres_flown_in_turns_leave_no_gap():
-    assert diagnose(fly(Setup(maneuvers=5, banks_deg=BANKS)), Aircraft()).verdict == "none"
-
-
-def test_a_pitch_rate_that_is_off_is_measured_in_turns_as_in_level_flight():
-    found = diagnose(fly(Setup(maneuvers=5, banks_deg=BANKS, q_bias=0.01)), Aircraft())
-    assert [cause.effect for cause in found.causes][:1] == ["pitch_rate_bias"]
-    assert found.causes[0].parameters["bias_rad_s"].value == pytest.approx(0.01, abs=0.001)
-
-
-def test_without_a_yaw_rate_in_the_log_a_bank_is_a_coordinated_turn():
-    flown = fly(Setup(maneuvers=5, banks_deg=BANKS))
-    without = []
-    for m in flown:
-        channels = {name: channel for name, channel in m.channels.items() if name != "r"}
-        without.append(type(m)(m.number, m.boot, m.span, channels, m.mode))
-    assert diagnose(without, Aircraft()).verdict == "none"
 
 
 def test_gravity_in_the_plane_of_symmetry_is_the_down_axis_without_its_sideways_part():

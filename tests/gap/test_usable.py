@@ -8,7 +8,6 @@ import pytest
 from advisor.aircraft.aircraft import Aircraft
 from advisor.gap.records.prepare import prepare
 from advisor.gap.records.usable import condensed, usable_of
-from tests.gap.diagnosed import diagnose
 from tests.gap.generator import Setup, fly
 
 FLOWN = fly(Setup(maneuvers=6, seed=71))
@@ -55,11 +54,3 @@ def test_what_comes_faster_than_it_need_is_averaged_between_neighbours_only():
     assert not np.any((there > 0.5) & (there < 0.6))
     slow = np.arange(0.0, 1.0, 0.02)
     assert condensed(slow, slow)[0] is slow
-
-
-@pytest.mark.study
-def test_a_log_of_twice_the_rate_tells_the_same():
-    setups = (Setup(maneuvers=6, switches={"delay": 0.05}, rate_hz=rate, seed=72) for rate in (50.0, 100.0))
-    once, twice = (diagnose(fly(setup), Aircraft()).causes[0] for setup in setups)
-    assert once.effect == twice.effect == "transport_delay"
-    assert twice.parameters["delay_s"].value == pytest.approx(0.05, abs=0.003)

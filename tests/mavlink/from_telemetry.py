@@ -13,8 +13,6 @@ from tests.mavlink.autopilot_logs import dataflash_head, dataflash_record
 DEFAULT = {"IMU": 50.0, "ATT": 25.0, "RCOU": 25.0, "CTUN": 25.0, "XKF1": 25.0, "ARSP": 10.0, "AOA": 10.0}
 """Records a second with LOG_BITMASK 65535 and a main loop of 50 Hz (FACTS of a flight recorded so)."""
 FAST = dict.fromkeys(DEFAULT, 50.0)
-MEDIUM = dict.fromkeys(DEFAULT, 10.0)
-"""As ArduPlane logs with ATTITUDE_MED alone, and did up to 2015."""
 FUNCTIONS = {"elevator": {2: 19}, "elevon": {1: 77, 2: 78}, "V-tail": {3: 79, 4: 80}}
 
 

@@ -1,7 +1,5 @@
 """A flight nobody here simulated: every manoeuvre found where it was flown, none invented."""
 
-from pathlib import Path
-
 import numpy as np
 import pytest
 
@@ -10,8 +8,8 @@ from advisor.aircraft.controls import Elevator
 from advisor.flight.maneuvers.events import ManeuverFlown, SideManeuverFlown
 from advisor.flight.stream.stream import FlightStream
 from advisor.mavlink.logs.tlog import read_tlog
+from tests.flights import SHIPPED, calm_two
 
-LOGS = Path(__file__).parents[3] / "logs"
 ELEVATOR = Elevator(calibration=((1000.0, 25.0), (1500.0, 0.0), (2000.0, -25.0)), lag_s=0.14)
 # First and last step of the pilot's command, and the sense of the first, from logs/README.md.
 FLOWN = (
@@ -30,7 +28,7 @@ def read(log, aircraft):
 
 @pytest.fixture(scope="module")
 def calm():
-    return read(LOGS / "arduplane-calm.tlog", Aircraft(elevator=ELEVATOR))
+    return read(SHIPPED / "arduplane-calm.tlog", Aircraft(elevator=ELEVATOR))
 
 
 def test_all_seven_are_found_within_a_tenth_of_a_second_and_nothing_else(calm):
@@ -65,18 +63,15 @@ def test_nose_up_is_positive_and_the_elevator_trailing_edge_down(calm):
     assert first.channels["a_z"].cut(start - 0.9, start).y.mean() == pytest.approx(-9.8, abs=0.5)
 
 
-def test_the_default_scale_of_the_servos_has_the_same_sign(calm, tmp_path):
+def test_the_default_scale_of_the_servos_has_the_same_sign(calm):
     _, maneuvers = calm
-    whole = (LOGS / "arduplane-calm.tlog").read_bytes()
-    two = tmp_path / "two.tlog"
-    two.write_bytes(whole[: len(whole) // 3])
-    stream, uncalibrated = read(two, Aircraft())
+    stream, uncalibrated = read(calm_two(), Aircraft())
     assert not stream.elevator.calibrated
     assert [m.span.kind for m in uncalibrated] == [m.span.kind for m in maneuvers[:2]]
 
 
 def test_the_log_at_default_rates_is_refused_by_message_and_rate():
-    stream, _ = read(LOGS / "arduplane-default-rates.tlog", Aircraft(elevator=ELEVATOR))
+    stream, _ = read(SHIPPED / "arduplane-default-rates.tlog", Aircraft(elevator=ELEVATOR))
     problems = stream.problems()
     assert {p.code for p in problems} == {"rate"}
     assert any("SERVO_OUTPUT_RAW arrives at 2.0 Hz" in p.text for p in problems)
@@ -86,7 +81,7 @@ def test_the_log_at_default_rates_is_refused_by_message_and_rate():
 def test_in_turbulence_a_movement_without_a_level_of_its_own_is_no_lateral_input():
     stream = FlightStream(Aircraft(elevator=ELEVATOR), lateral=True)
     events = [
-        event for columns in read_tlog(LOGS / "arduplane-turbulent.tlog") for event in stream.feed(columns)
+        event for columns in read_tlog(SHIPPED / "arduplane-turbulent.tlog") for event in stream.feed(columns)
     ]
     events += stream.finish()
     inputs = [e.maneuver.span for e in events if isinstance(e, SideManeuverFlown)]

@@ -139,15 +139,6 @@ def test_fifty_hangs_at_random_moments_change_no_verdict(advising: Advising):
     assert {text.partition(" s ")[2] for text in why} <= {"are missing: the advisor was down; fly it again"}
 
 
-def test_the_link_goes_on_recording_when_everything_else_is_killed(advising: Advising):
-    advising.start()
-    flight = until(FLIGHT, 8.0)
-    advising.kill()
-    fly(flight, advising.port, SPEED, lambda now_s: None)
-    wait_until(lambda: len(records_of(advising.recording)) == len(flight), 5.0)
-    assert advising.note_of_keeper()["alone"]
-
-
 def test_the_link_goes_on_recording_when_the_terminal_goes_away(advising: Advising):
     advising.start()
     flight = until(FLIGHT, 8.0)
@@ -191,11 +182,15 @@ def test_a_home_that_takes_no_file_keeps_nobody_from_advising(advising: Advising
     assert len(records_of(recording)) == len(flight)
 
 
-def test_a_new_flight_test_on_the_connection_of_a_lost_one_ends_it_and_says_how_to_take_it_up(
+def test_a_link_left_alone_records_until_a_new_flight_test_ends_it_and_says_how_to_resume(
     advising: Advising,
 ):
     advising.start()
     advising.kill()
+    flight = until(FLIGHT, 8.0)
+    fly(flight, advising.port, SPEED, lambda now_s: None)
+    wait_until(lambda: len(records_of(advising.recording)) == len(flight), 5.0)
+    assert advising.note_of_keeper()["alone"]
     other = advising.folder / "other.tlog"
     advising.start("--master", f"udpin:127.0.0.1:{advising.port}", "--record", str(other))
     assert f"--resume {advising.recording} continues its flight test" in advising.warned

@@ -88,38 +88,11 @@ def test_a_flight_of_the_bundled_aircraft_is_the_same_live_and_from_the_recordin
     assert "BAD_DATA" not in seen
 
 
-def test_through_mavproxy_the_flight_arrives_and_requests_reach_the_aircraft(tmp_path: Path) -> None:
+def test_mavproxy_between_passes_the_flight_the_requests_and_a_whole_announcement(tmp_path: Path) -> None:
     vehicle_port, advisor_port = free_port(), free_port()
     rates, inquiry = RateRequest({"ATTITUDE": 40.0, "AOA_SSA": 20.0}), Inquiry()
-    proxy = (
-        str(TOOLS / "mavproxy.py"),
-        f"--master=udpin:127.0.0.1:{vehicle_port}",
-        f"--out=udpout:127.0.0.1:{advisor_port}",
-        "--non-interactive",
-        "--streamrate=-1",
-        "--default-modules=link",
-        f"--state-basedir={tmp_path}",
-        f"--logfile={tmp_path / 'proxy.tlog'}",
-    )
-    with (
-        Link(f"udpin:127.0.0.1:{advisor_port}", talkers=[rates, inquiry]) as link,
-        running(*proxy, folder=tmp_path),
-    ):
-        wait_for_udp(vehicle_port)
-        with running(*aircraft(f"udpout:127.0.0.1:{vehicle_port}", tmp_path, 1.0), folder=tmp_path):
-            wait_until(lambda: bool(rates.delivered_hz), timeout_s=20.0)
-            wait_until(lambda: inquiry.done, timeout_s=20.0)
-        assert link.statistics.vehicle == (1, 1)
-    assert rates.answers == {"ATTITUDE": "granted", "AOA_SSA": "granted"}
-    assert 36.0 < rates.delivered_hz["ATTITUDE"] < 44.0
-    assert 18.0 < rates.delivered_hz["AOA_SSA"] < 22.0
-    assert inquiry.parameters["SERVO2_FUNCTION"] == 19.0
-    assert {"SERVO2_MIN", "SERVO2_TRIM", "SERVO2_MAX", "SERVO2_REVERSED"} <= inquiry.parameters.keys()
-
-
-def test_mavproxy_shows_whole_an_announcement_that_comes_in_by_its_master(tmp_path: Path) -> None:
-    vehicle_port, advisor_port = free_port(), free_port()
     announcer = Announcer()
+    aside = SeparateConnection(announcer, f"udpout:127.0.0.1:{vehicle_port}")
     proxy = (
         str(TOOLS / "mavproxy.py"),
         f"--master=udpin:127.0.0.1:{vehicle_port}",
@@ -131,16 +104,22 @@ def test_mavproxy_shows_whole_an_announcement_that_comes_in_by_its_master(tmp_pa
         f"--logfile={tmp_path / 'proxy.tlog'}",
     )
     sentence = "REPEAT: too gentle, pitch rate 3 deg/s (at least 5); use about 1.5 times the stick"
-    aside = SeparateConnection(announcer, f"udpout:127.0.0.1:{vehicle_port}")
     with (
-        Link(f"udpin:127.0.0.1:{advisor_port}", talkers=[aside]) as link,
+        Link(f"udpin:127.0.0.1:{advisor_port}", talkers=[rates, inquiry, aside]) as link,
         running(*proxy, folder=tmp_path),
     ):
         wait_for_udp(vehicle_port)
         with running(*aircraft(f"udpout:127.0.0.1:{vehicle_port}", tmp_path, 1.0), folder=tmp_path):
-            wait_until(lambda: link.statistics.vehicle == (1, 1), timeout_s=30.0)
+            wait_until(lambda: bool(rates.delivered_hz), timeout_s=20.0)
+            wait_until(lambda: inquiry.done, timeout_s=20.0)
             announcer.judged(1, sentence)
             wait_until(lambda: f"@1 {sentence}".encode() in said_in(tmp_path), timeout_s=20.0)
+        assert link.statistics.vehicle == (1, 1)
+    assert rates.answers == {"ATTITUDE": "granted", "AOA_SSA": "granted"}
+    assert 36.0 < rates.delivered_hz["ATTITUDE"] < 44.0
+    assert 18.0 < rates.delivered_hz["AOA_SSA"] < 22.0
+    assert inquiry.parameters["SERVO2_FUNCTION"] == 19.0
+    assert {"SERVO2_MIN", "SERVO2_TRIM", "SERVO2_MAX", "SERVO2_REVERSED"} <= inquiry.parameters.keys()
 
 
 def said_in(folder: Path) -> bytes:

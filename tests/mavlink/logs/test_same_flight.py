@@ -11,32 +11,22 @@ from advisor.aircraft.reference import PARAMETERS
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.oem.estimate import Estimate
 from advisor.oem.estimator import estimate_jointly
-from tests.flights import FOLDER
+from tests.flights import FOLDER, calm_two
 from tests.heard import hear_log
-from tests.mavlink.builders import REPOSITORY
 from tests.mavlink.from_telemetry import DEFAULT, FAST, dataflash_of
 
 DERIVATIVES = [PARAMETERS.index(name) for name in ("Z_alpha", "M_alpha", "M_q", "M_delta_e")]
 
 
 @cache
-def flight() -> Path:
-    """The first two manoeuvres of a flight of ArduPlane."""
-    path = FOLDER / "arduplane-two.tlog"
-    whole = (REPOSITORY / "logs" / "arduplane-calm.tlog").read_bytes()
-    path.write_bytes(whole[: len(whole) // 3])
-    return path
-
-
-@cache
 def as_telemetry() -> list[Maneuver]:
-    return flown(flight())
+    return flown(calm_two())
 
 
 @cache
 def own_log(fast: bool, tail: str) -> list[Maneuver]:
     """The flight's manoeuvres in the log that the autopilot of an aircraft with such a tail keeps."""
-    return logged(dataflash_of(flight(), FAST if fast else DEFAULT, tail))
+    return logged(dataflash_of(calm_two(), FAST if fast else DEFAULT, tail))
 
 
 def flown(path: Path) -> list[Maneuver]:
@@ -82,5 +72,5 @@ def test_a_mixed_tail_is_read_as_the_elevator_that_it_makes(tail: str) -> None:
 
 
 def test_without_imu_the_angles_tell_of_the_same_aircraft() -> None:
-    content = dataflash_of(flight(), DEFAULT, "elevator").replace(b"IMU\0Q", b"XXX\0Q")
+    content = dataflash_of(calm_two(), DEFAULT, "elevator").replace(b"IMU\0Q", b"XXX\0Q")
     assert np.all(apart(model(logged(content))) < 1.0)
