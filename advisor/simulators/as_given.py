@@ -10,11 +10,10 @@ from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.gap.candidates.catalogue import variants_for
 from advisor.gap.candidates.known import with_known
 from advisor.gap.effects import EFFECTS
-from advisor.gap.fitting.problem import EffectProblem, SearchPoint
 from advisor.gap.records.flights import PreparedManeuvers
 from advisor.gap.result import Trace, TrimDifference
 from advisor.gap.search.baseline import base_entries
-from advisor.gap.simulator.layout import DERIVATIVES, INDEX, NUISANCES, OUTPUTS
+from advisor.gap.simulator.layout import DERIVATIVES, INDEX, OUTPUTS
 from advisor.simulators.air import refuse_unknown_air, standard_heights, winds
 from advisor.simulators.around import COMMAND
 from advisor.simulators.by_log import IdentifiedSimulator
@@ -32,7 +31,7 @@ from advisor.simulators.inputs import other_controls
 from advisor.simulators.linear import LinearSimulator
 from advisor.simulators.protocol import Condition, Inputs, Replay, Simulator
 from advisor.simulators.static_errors import trim_differences
-from advisor.simulators.surrogate import Surrogate, surrogate_of
+from advisor.simulators.surrogate import Surrogate, entries_of, surrogate_of
 
 
 @dataclass(frozen=True)
@@ -104,8 +103,7 @@ def _surrogate_and_rest(
 ) -> tuple[Surrogate, dict[int, AsGiven], list[Replay]]:
     """Return the surrogate, every manoeuvre as the simulator flew it, and the replays."""
     flights = flying.flights
-    variants = variants_for(flights)
-    values = with_known(base_entries(aircraft), aircraft.effects, flights, variants)
+    values = with_known(base_entries(aircraft), aircraft.effects, flights, variants_for(flights))
     command = np.zeros_like(values)
     entries = [INDEX[name] for name in COMMAND]
     command[:, entries] = values[:, entries]
@@ -114,12 +112,10 @@ def _surrogate_and_rest(
     flown = flying.as_flown(replays)
     surrogate = surrogate_of(flights, flown, replays, command, flying.simulator.linearise(_usual(flying)))
     refuse_wrong_elevator(flying.simulator.description, surrogate.derivatives["M_delta_e"], replays, flights)
-    base = with_known(base_entries(surrogate.aircraft(aircraft)), aircraft.effects, flights, variants)
-    derivatives = np.array([surrogate.derivatives[name] for name in DERIVATIVES])
-    own = np.zeros((len(flights), len(NUISANCES)))
-    p = EffectProblem(flights, base).driving(SearchPoint(derivatives, own))
+    p = entries_of(flights, surrogate.aircraft(aircraft), aircraft.effects)
     if any(EFFECTS[effect].block in EQUATIONS for effect in aircraft.effects):
-        replays = flying.replays(command, False, added(flown, p, derivatives))
+        as_given = np.array([surrogate.derivatives[name] for name in DERIVATIVES])
+        replays = flying.replays(command, False, added(flown, p, as_given))
     grids = beyond(flying, replays, p)
     return surrogate, {f.number: AsGiven(f, grid) for f, grid in zip(flown, grids, strict=True)}, replays
 

@@ -23,7 +23,8 @@ from advisor.simulators.as_given import GivenSimulator, given_of
 from advisor.simulators.flying import Progress, without_difference
 from advisor.simulators.improved import EQUATIONS, in_simulator, where_it_acts
 from advisor.simulators.linear import LinearSimulator
-from advisor.simulators.mirror import Mirror, said_of_the_simulator
+from advisor.simulators.mirror import Mirror
+from advisor.simulators.mirrored import said_of_the_simulator
 from advisor.simulators.protocol import Simulator
 from advisor.simulators.static_errors import with_static_errors
 from advisor.simulators.taken_back import with_unseen_shrink, without_worse

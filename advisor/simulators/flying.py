@@ -103,7 +103,9 @@ class AsGiven:
     """Shape (4, n + 1): simulator outputs minus surrogate outputs."""
 
 
-def beyond(flying: Flying, replays: Sequence[Replay], p: FloatArray, held: bool = False) -> list[FloatArray]:
+def beyond(
+    flying: Flying, replays: Sequence[Replay], p: FloatArray, held: bool = False, as_read: bool = False
+) -> list[FloatArray]:
     """Return the simulator outputs minus those of a surrogate with equal effects, by manoeuvre.
 
     Parameters
@@ -114,6 +116,8 @@ def beyond(flying: Flying, replays: Sequence[Replay], p: FloatArray, held: bool 
         Shape (manoeuvres, entries): inputs of the surrogate, including effects around and in the simulator.
     held
         Whether the command was held between its stamps.
+    as_read
+        Whether the replays contain the effects of the instruments already.
 
     Returns
     -------
@@ -122,11 +126,14 @@ def beyond(flying: Flying, replays: Sequence[Replay], p: FloatArray, held: bool 
     problem = EffectProblem(flying.flights, p, held)
     differences = []
     for there, replay, numbers in zip(flying.as_flown(replays), replays, p, strict=True):
+        linear = problem.fly(there, trimmed_at(numbers, there))
+        if as_read:
+            differences.append(on_grid(replay, there) - skewed(linear, there.h, numbers))
+            continue
         ends = np.arange(there.n + 1) * there.h
         speed = np.interp(ends, replay.t, replay.airspeed_m_s)
         surface = surface_of(there, numbers, held)
         read = instruments(on_grid(replay, there), speed, surface, there.h, numbers)
-        linear = problem.fly(there, trimmed_at(numbers, there))
         differences.append(skewed(read - linear, there.h, numbers))
     return differences
 

@@ -15,31 +15,23 @@ from advisor.aircraft.aircraft import Aircraft
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.flight.signals.record import Channel
 from advisor.gap.candidates.catalogue import variants_for
-from advisor.gap.candidates.known import Effects, with_known
-from advisor.gap.diagnose import Examined, examine
+from advisor.gap.candidates.known import Effects
+from advisor.gap.diagnose import examine
 from advisor.gap.fitting.fit import fit
-from advisor.gap.fitting.measure import whole_gap
-from advisor.gap.fitting.problem import EffectProblem, SearchPoint
 from advisor.gap.inference.evidence import FlightProblem
 from advisor.gap.inference.pitch import PitchFlight, PitchModel
 from advisor.gap.inference.posterior import stated_as
 from advisor.gap.records.prepare import prepare
-from advisor.gap.result import Cause, Diagnosis, Value
 from advisor.gap.search.baseline import base_entries, fit_baseline
 from advisor.gap.search.screen import Screen
-from advisor.gap.simulator.layout import DERIVATIVES, NUISANCES
+from advisor.gap.simulator.layout import DERIVATIVES
 from advisor.gap.verdict.causes import parameters_of
-from advisor.gap.verdict.statements import what
-from advisor.gap.verdict.text import answers_of
-from advisor.simulators.around import skewed
-from advisor.simulators.flying import AsGiven, Flying
+from advisor.simulators.flying import AsGiven, Flying, beyond
 from advisor.simulators.improved import with_series
-from advisor.simulators.inputs import on_grid
+from advisor.simulators.mirrored import negative_of
 from advisor.simulators.protocol import Replay
 from advisor.simulators.rate_filter import cause_of, lateness, unfiltered
-from advisor.simulators.surrogate import trimmed_at
-from advisor.simulators.unseen import floor_of, predicted, unknown_offset
-from advisor.words.certainty import as_sure
+from advisor.simulators.surrogate import entries_of
 from advisor.words.problems import UnusableInputError
 
 _BLOCKS = frozenset({"input", "alpha_sensor", "pitch_rate_sensor", "accelerometer", "timing"})
@@ -95,7 +87,7 @@ class Mirror:
         effects = {c.effect: own.effects[c.effect] for c in causes if c.effect in own.effects}
         model = {name: own.model[name].value for name in DERIVATIVES}
         filtered = [] if late is None else [cause_of(late, own)]
-        first, *rest = [*filtered, *map(_negative, causes)]
+        first, *rest = [*filtered, *map(negative_of, causes)]
         return replace(
             beside(replays, (model, effects)),
             alternative=stated_as(first.effect), taken_out=(first, *rest), chance=first.probability,
@@ -117,8 +109,11 @@ class Mirror:
         """Return the flight next to the simulator without its effects."""
         reference = self.flying.flights.reference_m_s
         as_file = replace(self._unknown, model=dict(model), reference_airspeed_m_s=reference)
-        grids = _beyond(self.flying, replays, as_file, effects)
-        differs = [grids[f.number].beyond - self.as_flown[f.number].beyond for f in problem.flights.flights]
+        flights = self.flying.flights
+        # The simulator hands its instruments' effects out already; the surrogate gets them here.
+        grids = beyond(self.flying, replays, entries_of(flights, as_file, effects), as_read=True)
+        by_number = dict(zip((f.number for f in flights.flights), grids, strict=True))
+        differs = [by_number[f.number] - self.as_flown[f.number].beyond for f in problem.flights.flights]
         derivatives = np.array([model[name] for name in DERIVATIVES])
         changed = replace(problem, base=base_entries(as_file), changes=(), prior_derivatives=derivatives)
         return replace(changed, flights=with_series(changed, differs, -1.0).flights)
@@ -146,37 +141,6 @@ class Mirror:
         return as_flights
 
 
-def said_of_the_simulator(whole: Examined, diagnosis: Diagnosis) -> Diagnosis:
-    """Return the diagnosis with the words and the gap of a simulator that has an effect too much."""
-    without = whole.findings.without
-    if without is None:
-        return diagnosis
-    first, before, after = diagnosis.causes[0], diagnosis.gap.before, _gap_without(whole, without)
-    removed = 100.0 * (1.0 - after / before)
-    sentence = f"{_said(first)}; without it the gap is {removed:.0f} % less."
-    where = replace(diagnosis.where, block=first.block, share=float(np.clip(removed / 100.0, 0.0, 1.0)))
-    simulated = diagnosis.in_simulator
-    if simulated is not None:
-        names = tuple(cause.effect for cause in diagnosis.causes if cause.present)
-        simulated = replace(
-            simulated, after=simulated.before, percent=0.0, on_paper=simulated.on_paper or names
-        )
-    return replace(
-        diagnosis, sentence=as_sure(sentence, answers_of(diagnosis.evidence)),
-        where=where, effects={}, waterfall=((first.effect, after),), shrink=None, in_simulator=simulated,
-    )  # fmt: skip
-
-
-def _gap_without(whole: Examined, problem: EffectProblem) -> float:
-    """Return the flight's gap to the simulator without its effects, with no parameter fitted."""
-    floor = floor_of(whole)
-    assert problem.prior_derivatives is not None
-    given = SearchPoint(problem.prior_derivatives, whole.findings.last.fitted.point.own)
-    plain, offset = whole.findings.models[0].fitted, unknown_offset(whole.diagnosis, None)
-    every = range(len(problem.flights))
-    return whole_gap(predicted(problem, given, plain, floor, every, offset).mean_square, floor)
-
-
 def _quick_look(as_flights: Sequence[Maneuver], unknown: Aircraft) -> _Sizes | None:
     """Return the replays' derivatives and likeliest actuator or instrument effect, or None."""
     problem, plain = fit_baseline(prepare(as_flights, unknown), unknown)
@@ -188,38 +152,3 @@ def _quick_look(as_flights: Sequence[Maneuver], unknown: Aircraft) -> _Sizes | N
     sizes = parameters_of(likeliest.variant, values, np.zeros(len(values)))
     model = dict(zip(DERIVATIVES, map(float, likeliest.point.derivatives), strict=True))
     return model, {likeliest.name: {name: size.value for name, size in sizes.items()}}
-
-
-def _beyond(
-    flying: Flying, replays: Sequence[Replay], as_file: Aircraft, effects: Effects
-) -> dict[int, AsGiven]:
-    """Return the difference between the simulator and a surrogate with its effects."""
-    flights = flying.flights
-    base = with_known(base_entries(as_file), effects, flights, variants_for(flights))
-    derivatives = np.array([as_file.model[name] for name in DERIVATIVES])
-    still = SearchPoint(derivatives, np.zeros((len(flights), len(NUISANCES))))
-    problem = EffectProblem(flights, base)
-    differences = {}
-    pairs = zip(flying.as_flown(replays), replays, problem.driving(still), strict=True)
-    for there, replay, numbers in pairs:
-        # The simulator hands its instruments' effects out already; the surrogate gets them here.
-        linear = skewed(problem.fly(there, trimmed_at(numbers, there)), there.h, numbers)
-        differences[there.number] = AsGiven(there, on_grid(replay, there) - linear)
-    return differences
-
-
-def _said(cause: Cause) -> str:
-    """Return the statement about a simulator effect of negative size."""
-    if cause.block == "input":
-        return what(cause)
-    read = what(_negative(cause))
-    return f"In the simulator alone {read[0].lower()}{read[1:]}"
-
-
-def _negative(cause: Cause) -> Cause:
-    """Return an effect of the simulator as a cause, with the negative of its size, because the aircraft lacks
-    the effect.
-    """
-    first, *rest = cause.parameters.items()
-    name, size = first
-    return replace(cause, parameters={name: Value(-size.value, size.std), **dict(rest)})

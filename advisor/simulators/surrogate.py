@@ -7,12 +7,15 @@ from itertools import product
 import numpy as np
 
 from advisor.aircraft.aircraft import Aircraft
+from advisor.gap.candidates.catalogue import variants_for
+from advisor.gap.candidates.known import Effects, with_known
 from advisor.gap.effects.actuator_lag import LAG
 from advisor.gap.effects.transport_delay import DELAY
 from advisor.gap.fitting.fit import EffectFit, fit
 from advisor.gap.fitting.problem import EffectProblem, SearchPoint
 from advisor.gap.fitting.regression import regressions
 from advisor.gap.records.flights import PreparedManeuver, PreparedManeuvers
+from advisor.gap.search.baseline import base_entries
 from advisor.gap.simulator.layout import (
     DERIVATIVES,
     HEIGHT,
@@ -60,6 +63,14 @@ class Surrogate:
         return replace(
             file, model=dict(self.derivatives), elevator=elevator, reference_airspeed_m_s=reference
         )
+
+
+def entries_of(flights: PreparedManeuvers, as_file: Aircraft, effects: Effects) -> FloatArray:
+    """Return the inputs of a file's model with effects, shape (manoeuvres, entries)."""
+    base = with_known(base_entries(as_file), effects, flights, variants_for(flights))
+    derivatives = np.array([as_file.model[name] for name in DERIVATIVES])
+    still = SearchPoint(derivatives, np.zeros((len(flights), len(NUISANCES))))
+    return EffectProblem(flights, base).driving(still)
 
 
 def surrogate_of(

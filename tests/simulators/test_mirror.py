@@ -10,7 +10,7 @@ from advisor.gap.result import Cause, Value
 from advisor.gap.verdict.statements import what
 from advisor.simulators.around import lagging
 from advisor.simulators.compare import compare
-from advisor.simulators.mirror import _negative, _said
+from advisor.simulators.mirrored import _said, negative_of
 from advisor.simulators.protocol import Condition, Inputs
 from advisor.simulators.rate_filter import lateness
 from tests.simulators.nonlinear import STEP_S, Nonlinear, flown
@@ -52,8 +52,8 @@ class Late(Nonlinear):
 def test_a_cause_of_the_simulator_is_said_as_what_it_has_too_much_of():
     limit = Cause("actuator_rate_limit", "input", 0.9, {"rate_rad_s": Value(0.3, 0.01)}, (), "", 0.0, True)
     play = Cause("actuator_backlash", "input", 0.9, {"half_width_rad": Value(0.006, 1e-4)}, (), "", 0.0, True)
-    assert what(_negative(limit)).startswith("The simulator's elevator reaches at most 17 deg/s")
-    assert what(_negative(play)).startswith("The simulator's elevator has 0.34 deg too much play")
+    assert what(negative_of(limit)).startswith("The simulator's elevator reaches at most 17 deg/s")
+    assert what(negative_of(play)).startswith("The simulator's elevator has 0.34 deg too much play")
 
 
 def test_an_instrument_of_the_simulator_is_said_to_be_the_simulators():
