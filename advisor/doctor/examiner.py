@@ -1,18 +1,16 @@
 """Examination of telemetry. It turns messages into findings, and neither reads files nor prints."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
 
 import numpy as np
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.aircraft.reference import PARAMETERS
 from advisor.aircraft_file.log_facts import FLYING_SHARE, SLOWEST_M_S
 from advisor.campaign.instruments import together
 from advisor.decision.first_unit import frequency
-from advisor.doctor.as_flown import as_flown
+from advisor.doctor.as_flown import assumed_of
 from advisor.doctor.examination import AlphaFound, ElevatorFound, Examination, Limit, in_order
-from advisor.doctor.expectation import NOISE, TYPICAL, Assumed, at_log_rates, expect
+from advisor.doctor.expectation import Assumed, at_log_rates, expect
 from advisor.doctor.instruments import (
     alpha_limits,
     clock_limits,
@@ -36,15 +34,8 @@ from advisor.flight.stream.stream import FlightStream
 from advisor.flight.stream.suitability import problems
 from advisor.flight.vehicle.surfaces import Surface
 from advisor.flight.vehicle.vehicle import Vehicle
-from advisor.model.short_period import ShortPeriod
-from advisor.oem.estimate import Estimate
-from advisor.oem.estimator import estimate_jointly
 from advisor.words.problems import Problem
 
-_PLAUSIBLE_RAD_S = (0.5, 40.0)
-_EXPLAINED = 0.5
-_KNOWN_SHARE = 0.3
-_LEAST_EFFECT = 0.02  # of M_delta_e beside the square of the natural frequency
 _DERIVED_RENEWAL_HZ = 20.0  # ArduPilot refreshes AOA_SSA no faster; on the ground its value stands still
 
 
@@ -99,7 +90,7 @@ class Examiner:
         """
         self._keep(self._stream.finish())
         vehicle = self._stream.vehicle
-        assumed = self._assumed()
+        assumed = assumed_of(self._maneuvers, self._aircraft)
         arrivals = {arrival.name: arrival for arrival in self._survey.arrivals} if self._survey else {}
         clocks = self._survey.clocks if self._survey else None
         paced = self._paced(arrivals)
@@ -175,24 +166,6 @@ class Examiner:
     def _keep(self, events: Sequence[object]) -> None:
         self._maneuvers += [event.maneuver for event in events if isinstance(event, ManeuverFlown)]
         self._notes += [e.text for e in events if isinstance(e, Notice) and e.code == READER_NOTICE]
-
-    def _assumed(self) -> Assumed:
-        """Return the assumed aircraft and noise, from the file's model, the flown manoeuvres, or typical
-        values.
-        """
-        flown = estimate_jointly(self._maneuvers, self._aircraft) if self._maneuvers else None
-        seen = Assumed(TYPICAL, NOISE, "a typical aircraft of 10 kg (yours: model in the aircraft file)")
-        seen = replace(seen, aircraft=self._aircraft)
-        if isinstance(flown, Estimate):
-            seen = as_flown(seen, self._maneuvers, flown)
-        if {"Z_alpha", "M_alpha", "M_q", "M_delta_e"} <= self._aircraft.model.keys():
-            model = ShortPeriod.from_mapping(self._aircraft.model)
-            return replace(seen, model=model, source="the model in the aircraft file")
-        if isinstance(flown, Estimate) and is_believable(flown):
-            number = len(self._maneuvers)
-            source = f"an estimate from {number} manoeuvre{'s' if number > 1 else ''} flown"
-            return replace(seen, model=ShortPeriod(flown.theta), source=source)
-        return seen
 
     def _paced(self, arrivals: dict[str, Arrival]) -> dict[str, Paced]:
         """Return the channels that identification needs, with the messages that determine their rates."""
@@ -276,19 +249,6 @@ class Examiner:
             cost = cost_of_missing("a_z", paced, assumed, speed)
             return [Limit("no_accelerometer", text, fix, std_ratio=cost)]
         return []
-
-
-def is_believable(flown: Estimate) -> bool:
-    """Return whether an estimate may represent the aircraft. It must explain the motion, and M_α and the
-    control derivative must be significant.
-    """
-    low, high = _PLAUSIBLE_RAD_S
-    pace = frequency(ShortPeriod(flown.theta))
-    moved = low < pace < high and abs(flown.value("M_delta_e")) > _LEAST_EFFECT * pace**2
-    explained = all(fit.r2 > _EXPLAINED for fits in flown.fits for fit in fits.values())
-    judged = [PARAMETERS.index(name) for name in ("M_alpha", "M_delta_e")]
-    sharp = bool(np.all(flown.std[judged] < _KNOWN_SHARE * np.abs(flown.theta[judged])))
-    return moved and explained and sharp and not {"M_alpha", "M_delta_e"} & flown.not_identifiable.keys()
 
 
 def _fast(message: str, vehicle: Vehicle) -> str:

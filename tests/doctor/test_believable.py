@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from advisor.doctor.examiner import is_believable
+from advisor.doctor.as_flown import is_believable
 from advisor.oem.estimate import Estimate
 from tests.decision.campaigns import THETA, estimate
 
