@@ -19,7 +19,7 @@ from typing import Any, TypeVar, cast
 import pytest
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.analysis import gap, whole_flights
+from advisor.analysis import axis_flown, gap, whole_flights
 from advisor.analysis.axes import side_comparison as side_gap
 from advisor.analysis.log_series import LogSeries
 from advisor.analysis.whole_flights import WholeFlights
@@ -40,7 +40,7 @@ Result = TypeVar("Result")
 def use_recorded(patch: pytest.MonkeyPatch) -> None:
     """Let commands read the analysis of a log that another test of this run has analysed already."""
     whole, compared = _once(whole_flights.read_whole), _once(gap.compare_logs)
-    for module in (whole_flights, page_content, side_gap, lateral_gap):
+    for module in (whole_flights, page_content, side_gap, axis_flown, lateral_gap):
         patch.setattr(module, "read_whole", whole)
     patch.setattr(gap, "compare_logs", compared)
     patch.setattr(gap, "compare_flown", _diagnosed_once(gap.compare_flown))

@@ -18,7 +18,7 @@ from advisor.words.problems import ConfigurationError
 
 if TYPE_CHECKING:
     from advisor.aircraft.aircraft import Aircraft
-    from advisor.analysis.axes.side_comparison import AxisFlown
+    from advisor.analysis.axis_flown import AxisFlown
     from advisor.campaign.hand_decisions import ByHand
     from advisor.exports.models.formats import AxisAsked
 
@@ -151,7 +151,7 @@ def _axis_flown(asked: LogsAsked, aircraft: "Aircraft", by_hand: "Sequence[ByHan
     """Return the axes to diagnose and the campaign read from the logs. Say so if only roll and yaw are
     diagnosed.
     """
-    from advisor.analysis.axes.side_comparison import axis_flown
+    from advisor.analysis.axis_flown import axis_flown
 
     with Stages() as tell:
         tell("reading", 0.0)

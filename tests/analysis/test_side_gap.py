@@ -1,19 +1,14 @@
 """Which simulator the lateral gap is compared with, by the aircraft file's ``simulator``."""
 
-from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from click.testing import CliRunner
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.analysis.axes import side_comparison as side_gap
-from advisor.analysis.log_series import LogSeries
-from advisor.cli.axes import lateral_gap as side_gap_command
-from advisor.cli.group import advisor
 from advisor.gap.result import Diagnosis, Gap
-from advisor.words.problems import ConfigurationError, UnusableInputError
+from advisor.words.problems import ConfigurationError
 
 STATE = SimpleNamespace(lateral=SimpleNamespace(model="as logged"))
 
@@ -86,64 +81,3 @@ def test_the_derivatives_of_a_simulators_log_are_its_numbers(compared, monkeypat
 def test_a_log_that_is_not_there_is_one_sentence(compared):
     with pytest.raises(ConfigurationError, match="there is no such file"):
         side_gap.compare_side_flown(STATE, Aircraft(simulator="log:nowhere.tlog"))
-
-
-@pytest.mark.parametrize(
-    ("found", "refused", "sideways", "axis"),
-    [
-        (1, 1, True, "lateral"),
-        (0, 0, True, "lateral"),
-        (2, 1, True, "both"),
-        (2, 1, False, "pitch"),
-        (1, 1, False, "pitch"),
-        (None, 0, True, "lateral"),
-        (None, 0, False, "pitch"),
-    ],
-)
-def test_the_axis_is_what_has_accepted_manoeuvres(monkeypatch, found, refused, sideways, axis):
-    def read(*_, **__):
-        if found is None:
-            raise UnusableInputError("no_maneuver", "none", "fly")
-        return SimpleNamespace(maneuvers=[0] * found, lateral=sideways)
-
-    def whole(*_, **__):
-        if not sideways:
-            raise UnusableInputError("no_maneuver", "none", "fly")
-        return SimpleNamespace(state=None)
-
-    monkeypatch.setattr(side_gap, "maneuvers_of", read)
-    monkeypatch.setattr(side_gap, "read_whole", whole)
-    monkeypatch.setattr(side_gap, "accepted_of", lambda _: [0])
-    monkeypatch.setattr(
-        side_gap,
-        "without_refused",
-        lambda m, _: SimpleNamespace(maneuvers=m, although_refused=tuple(range(refused))),
-    )
-    assert side_gap.axis_flown([Path("a.tlog")], Aircraft())[0] == axis
-
-
-def test_a_flight_of_the_elevator_alone_is_read_once(monkeypatch):
-    readings, fed = [], LogSeries.fed_to
-    monkeypatch.setattr(LogSeries, "fed_to", lambda self, *a: readings.append(self.logs) or fed(self, *a))
-    log = Path("logs/bundled-demo.tlog")
-    assert side_gap.axis_flown([log], Aircraft()).axis == "pitch"
-    assert readings == [[log]]
-
-
-def test_a_flight_that_roll_and_yaw_answer_is_read_once(monkeypatch):
-    state, compared = SimpleNamespace(), []
-
-    def no_elevator(*_, **__):
-        raise UnusableInputError("no_maneuver", "none", "fly")
-
-    def compare(found, *_):
-        compared.append(found)
-        raise UnusableInputError("no_gap", "nothing to compare", "fly")
-
-    monkeypatch.setattr(side_gap, "maneuvers_of", no_elevator)
-    monkeypatch.setattr(side_gap, "read_whole", lambda *_, **__: SimpleNamespace(state=state))
-    monkeypatch.setattr(side_gap, "accepted_of", lambda _: [0])
-    monkeypatch.setattr(side_gap_command, "read_whole", None)
-    monkeypatch.setattr(side_gap_command, "compare_side_flown", compare)
-    CliRunner().invoke(advisor, ["gap", "logs/bundled-demo.tlog"])
-    assert compared == [state]

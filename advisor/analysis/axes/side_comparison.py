@@ -3,25 +3,18 @@
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import NamedTuple, TypeVar
+from typing import TypeVar
 
 import numpy as np
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft.reference import SIDE_PARAMETERS
-from advisor.analysis.gap_flights import GapFlights, maneuvers_of
-from advisor.analysis.refused import without_refused
-from advisor.analysis.whole_flights import Axis, read_whole
-from advisor.campaign.hand_decisions import ByHand
+from advisor.analysis.whole_flights import read_whole
 from advisor.campaign.state import CampaignState
-from advisor.flight.maneuvers.events import SideManeuverFlown
 from advisor.flight.maneuvers.maneuver import Maneuver
-from advisor.flight.maneuvers.marks import Mark
-from advisor.flight.stream.stream import FlightStream
 from advisor.gap.axes.lateral.comparison import compare_side
 from advisor.gap.inference.prior import FIELD, FieldPrior
 from advisor.gap.result import Diagnosis, Trace
-from advisor.mavlink.logs.whole import read_whole_log
 from advisor.oem.axes.lateral.estimator import estimate_lateral
 from advisor.oem.estimate import Estimate, NoEstimate
 from advisor.simulators.axes.side_difference import side_without_difference
@@ -91,61 +84,6 @@ def side_traces(
         return replace(trace, **curves)
 
     return tuple(map(whole, traces))
-
-
-class AxisFlown(NamedTuple):
-    """Axes that a diagnosis of the logs can judge, with the data that were read for this choice."""
-
-    axis: Axis
-    elevator: GapFlights | None
-    """Manoeuvres of the elevator, if they can be read."""
-    state: CampaignState | None = None
-    """State of the campaign with both axes, if roll and yaw have an accepted manoeuvre."""
-
-
-def axis_flown(
-    logs: Sequence[Path],
-    aircraft: Aircraft,
-    target_system: int | None = None,
-    by_hand: Sequence[ByHand] = (),
-    marks: Sequence[Mark] = (),
-    no_marks: bool = False,
-) -> AxisFlown:
-    """Return the axes with an accepted manoeuvre, and the data that were read.
-
-    Without an accepted manoeuvre, the axis is pitch.
-    """
-    flown = None
-    is_pitch = sideways = False
-    try:
-        flown = maneuvers_of(logs, aircraft, target_system, by_hand, lateral=True)
-        sideways = flown.lateral
-        if sideways:
-            # An input of all controls at once has other ends where roll and yaw are looked for.
-            flown = maneuvers_of(logs, aircraft, target_system, by_hand)
-        chosen = without_refused(flown.maneuvers, aircraft)
-        is_pitch = len(chosen.although_refused) < len(chosen.maneuvers)
-    except UnusableInputError:
-        pass  # The diagnosis of pitch gives the reason, where roll and yaw have no manoeuvre either.
-    try:
-        if is_pitch and not sideways:
-            return AxisFlown("pitch", flown)
-        state = read_whole(logs, aircraft, target_system, marks, no_marks=no_marks, axis="lateral").state
-        accepted_of(state)
-    except UnusableInputError:
-        return AxisFlown("pitch", flown)
-    return AxisFlown("both" if is_pitch else "lateral", flown, state)
-
-
-def flies_roll_or_yaw(
-    log: Path, aircraft: Aircraft, target_system: int | None, marks: Sequence[Mark]
-) -> bool:
-    """Return whether a log holds a manoeuvre of aileron or rudder, without an analysis of the campaign."""
-    stream = FlightStream(aircraft, target_system, marks, lateral=True)
-    events = [
-        event for columns in read_whole_log(log, columns=aircraft.columns) for event in stream.feed(columns)
-    ]
-    return any(isinstance(event, SideManeuverFlown) for event in (*events, *stream.finish()))
 
 
 def beside_simulator(
