@@ -93,6 +93,12 @@ def pytest_collection_finish() -> None:
     gc.freeze()
 
 
+def pytest_sessionfinish() -> None:
+    """Examine all objects once for errors in what nobody holds any more, and not five times."""
+    gc.collect()
+    gc.freeze()
+
+
 def pytest_itemcollected(item: pytest.Item) -> None:
     """Keep tests in one process that share results of their module or of their package."""
     if item.get_closest_marker("xdist_group") or not isinstance(item, pytest.Function):

@@ -28,7 +28,8 @@ def recorded(
 ) -> Path:
     """A log of the paper's seven manoeuvres, or of others."""
     noise = Noise(percent=noise_percent)
-    scenario = Scenario(aircraft=aircraft, noise=noise, seed=seed, maneuvers=maneuvers)
+    wait_s = {} if len(maneuvers) > 4 else {"gap_s": 5.0, "closing_s": 3.0}
+    scenario = Scenario(aircraft=aircraft, noise=noise, seed=seed, maneuvers=maneuvers, **wait_s)
     flown = f"{crc32(repr(scenario).encode()):08x}"
     path = SHARED / f"{aircraft}-{noise_percent}-{seed}-{len(maneuvers)}-{flown}.tlog"
     if not path.exists():

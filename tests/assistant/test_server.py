@@ -6,16 +6,26 @@ import subprocess
 import sys
 from collections.abc import Sequence
 from pathlib import Path
-from typing import IO, Any
+from typing import IO, TYPE_CHECKING, Any
 
 import pytest
-from mcp import Client, StdioServerParameters
 
 from advisor.assistant.calls import Calls
 from advisor.assistant.folders import RefusedError, folders_of
-from advisor.assistant.server import server_of
+
+if TYPE_CHECKING:
+    from mcp import Client
 
 LOGS = Path(__file__).parents[2] / "logs"
+
+
+def client_of(folder: Path, calls: Calls) -> "Client":
+    """A client of the server of a folder. Its modules take a second, in every process that collects tests."""
+    from mcp import Client
+
+    from advisor.assistant.server import server_of
+
+    return Client(server_of(folders_of([folder], 1000), calls))
 
 
 class Noted(Calls):
@@ -44,7 +54,7 @@ def flights(tmp_path: Path) -> Path:
 
 
 async def test_the_tools_are_doctor_analyze_gap_and_report_and_only_read(flights: Path) -> None:
-    async with Client(server_of(folders_of([flights], 1000), Noted({}))) as client:
+    async with client_of(flights, Noted({})) as client:
         tools = (await client.list_tools()).tools
         assert [tool.name for tool in tools] == ["doctor", "analyze", "gap", "report"]
         assert all(tool.annotations is not None and tool.annotations.read_only_hint for tool in tools)
@@ -53,7 +63,7 @@ async def test_the_tools_are_doctor_analyze_gap_and_report_and_only_read(flights
 
 async def test_a_tool_answers_with_the_commands_document(flights: Path) -> None:
     calls = Noted({"schema": "advisor.analyze/1", "usable": True})
-    async with Client(server_of(folders_of([flights], 1000), calls)) as client:
+    async with client_of(flights, calls) as client:
         told = await client.call_tool("analyze", {"logs": ["a.tlog"], "aircraft": "plain.yaml"})
     assert answer(told) == calls.answer
     assert told.structured_content is None
@@ -63,7 +73,7 @@ async def test_a_tool_answers_with_the_commands_document(flights: Path) -> None:
 @pytest.mark.parametrize("arguments", [{"log": "a.tlog"}, {"logs": ["a.tlog"]}, {"logs": "a.tlog"}])
 async def test_log_and_logs_name_the_same(flights: Path, arguments: dict[str, Any]) -> None:
     calls = Noted({})
-    async with Client(server_of(folders_of([flights], 1000), calls)) as client:
+    async with client_of(flights, calls) as client:
         for tool in ("doctor", "analyze", "gap", "report"):
             await client.call_tool(tool, arguments)
     assert [called[1] for called in calls.called] == [str(flights / "a.tlog")] * 4
@@ -71,7 +81,7 @@ async def test_log_and_logs_name_the_same(flights: Path, arguments: dict[str, An
 
 async def test_the_gap_gives_its_evidence_on_request(flights: Path) -> None:
     calls = Noted({"schema": "advisor.gap/1", "evidence": [1, 2, 3], "traces": []})
-    async with Client(server_of(folders_of([flights], 1000), calls)) as client:
+    async with client_of(flights, calls) as client:
         told = await client.call_tool("gap", {"log": "a.tlog"})
         asked = await client.call_tool("gap", {"log": "a.tlog", "part": "evidence"})
     left_out = "left out, 0.0 kB; ask for part evidence"
@@ -80,7 +90,7 @@ async def test_the_gap_gives_its_evidence_on_request(flights: Path) -> None:
 
 
 async def test_the_report_is_markdown(flights: Path) -> None:
-    async with Client(server_of(folders_of([flights], 1000), Noted({}))) as client:
+    async with client_of(flights, Noted({})) as client:
         told = await client.call_tool("report", {"logs": ["a.tlog"]})
     assert told.content[0].text == "# The page"
 
@@ -97,7 +107,7 @@ async def test_what_is_not_allowed_is_refused_in_a_sentence(
     flights: Path, tool: str, arguments: dict[str, Any], why: str
 ) -> None:
     calls = Noted({})
-    async with Client(server_of(folders_of([flights], 1000), calls)) as client:
+    async with client_of(flights, calls) as client:
         told = await client.call_tool(tool, arguments)
     assert told.is_error
     assert why in told.content[0].text
@@ -152,6 +162,8 @@ def answer(told: Any) -> Any:
 
 async def test_the_command_serves_a_log_to_a_client_over_its_streams(tmp_path: Path) -> None:
     """The whole way: the command in its process, the SDK's client, a real log."""
+    from mcp import Client, StdioServerParameters
+
     shutil.copy(LOGS / "arduplane-default-rates.tlog", tmp_path / "slow.tlog")
     server = StdioServerParameters(
         command=sys.executable, args=["-m", "advisor", "mcp", str(tmp_path)], cwd=LOGS.parent

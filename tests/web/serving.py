@@ -10,8 +10,10 @@ import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
+from typing import TYPE_CHECKING
 
-from playwright.sync_api import Browser, Page, WebSocket, sync_playwright
+if TYPE_CHECKING:
+    from playwright.sync_api import Browser, Page, WebSocket
 
 BROWSER = shutil.which("chromium") or shutil.which("chromium-browser")
 _CONTROL = re.compile(r"\x1b\[[0-9;?]*[A-Za-z]")
@@ -63,7 +65,7 @@ class Serving:
 class Screen:
     """One page of the browser: what it asks for, and what is painted on it."""
 
-    def __init__(self, browser: Browser, url: str) -> None:
+    def __init__(self, browser: "Browser", url: str) -> None:
         self.asked: list[str] = []
         self.wrong: list[str] = []
         self._painted: list[bytes] = []
@@ -96,13 +98,15 @@ class Screen:
             assert time.monotonic() < give_up_s, f"waited in vain; painted was: {self.text[-2000:]}"
             self._page.wait_for_timeout(50)
 
-    def _listen(self, socket: WebSocket) -> None:
+    def _listen(self, socket: "WebSocket") -> None:
         socket.on("framereceived", lambda frame: self._painted.append(frame) if frame[:1] != "[" else None)
 
 
 @contextmanager
-def a_browser() -> Iterator[Browser]:
+def a_browser() -> Iterator["Browser"]:
     """Run the browser that the system has."""
+    from playwright.sync_api import sync_playwright
+
     with sync_playwright() as playwright:
         browser = playwright.chromium.launch(
             executable_path=BROWSER, args=["--no-sandbox", "--disable-gpu", "--disable-background-networking"]

@@ -3,13 +3,16 @@
 import socket
 from collections.abc import Iterator
 from pathlib import Path
+from typing import TYPE_CHECKING
 from urllib.parse import urlsplit
 
 import pytest
-from playwright.sync_api import Browser
 
 from tests.mavlink.link.builders import Sender, attitude, heartbeat, wait_until
 from tests.web.serving import BROWSER, PATIENCE_S, Screen, Serving, a_browser
+
+if TYPE_CHECKING:
+    from playwright.sync_api import Browser
 
 LOGS = Path(__file__).parents[2] / "logs"
 pytestmark = [
@@ -19,14 +22,14 @@ pytestmark = [
 
 
 @pytest.fixture(scope="module")
-def browser() -> Iterator[Browser]:
+def browser() -> Iterator["Browser"]:
     with a_browser() as browser:
         yield browser
 
 
 @pytest.mark.study
 def test_a_log_is_replayed_in_a_page_that_asks_nothing_of_another_host(
-    browser: Browser, tmp_path: Path
+    browser: "Browser", tmp_path: Path
 ) -> None:
     serving = Serving(tmp_path, "replay", LOGS / "bundled-demo.tlog", "--speed", "max")
     try:
@@ -42,7 +45,7 @@ def test_a_log_is_replayed_in_a_page_that_asks_nothing_of_another_host(
 
 
 def test_two_pages_show_one_campaign_on_one_link_and_nothing_outlives_the_command(
-    browser: Browser, tmp_path: Path
+    browser: "Browser", tmp_path: Path
 ) -> None:
     with socket.create_server(("127.0.0.1", 0)) as vehicle:
         master = f"tcp:127.0.0.1:{vehicle.getsockname()[1]}"

@@ -9,10 +9,9 @@ import time
 from collections.abc import Iterator
 from concurrent.futures import BrokenExecutor
 from pathlib import Path
+from typing import TYPE_CHECKING
 
-import dask
 import pytest
-from distributed import LocalCluster
 from threadpoolctl import threadpool_info, threadpool_limits
 
 from advisor.aircraft.aircraft import Aircraft
@@ -30,6 +29,9 @@ from tests.batch.test_command import folder as folder
 from tests.batch.test_command import in_this_process as in_this_process
 from tests.conftest import Advisor
 
+if TYPE_CHECKING:
+    from distributed import LocalCluster
+
 SAME = {"advisor": "1.0", "python": "3.11.2.final.0", "numpy": "2.1"}
 
 TWO_SLEEPS = """
@@ -45,11 +47,14 @@ except ConfigurationError as error:
 """A program that does two tasks and says when the first is done."""
 
 
-def started(workers: int, processes: bool = False) -> LocalCluster:
+def started(workers: int, processes: bool = False) -> "LocalCluster":
     """A cluster on loopback, at ports that the system chooses; a task may kill two workers of its own.
 
     Workers are threads, whose start takes no seconds, where nothing asks for processes.
     """
+    import dask
+    from distributed import LocalCluster
+
     with dask.config.set({"distributed.scheduler.allowed-failures": 1}):
         return LocalCluster(
             n_workers=workers,
