@@ -88,11 +88,11 @@ def test_a_joint_estimate_that_was_asked_for_is_kept(states: tuple[CampaignState
 def test_a_further_manoeuvre_continues_the_fit_of_the_earlier_ones_on_its_only_hill(
     states: tuple[CampaignState, CampaignState], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    maneuvers = [judged.maneuver for judged in states[1].maneuvers]
+    maneuvers = [judged.maneuver for judged in states[1].maneuvers[:2]]
     anew = estimate_jointly(maneuvers, Aircraft())
     monkeypatch.setattr(joint_estimate, "fit_jointly", fit_jointly)
     together = Together(Aircraft())
-    together.estimate(maneuvers[:2])
+    together.estimate(maneuvers[:1])
     monkeypatch.delattr(instrument_fit, "_hills")
     continued = together.estimate(maneuvers)
     assert continued is not None

@@ -14,23 +14,25 @@ from advisor.campaign.state import CampaignState
 from advisor.mavlink.logs.logs import open_log
 from advisor.session.timeline import Timeline
 from tests.decision.campaigns import THETA, estimate, with_change
-from tests.flights import SHIPPED
+from tests.flights import TWO, recorded
 
 M_ALPHA = PARAMETERS.index("M_alpha")
 TRUTH = -4.93
-"""M_α of the bundled demonstration's aircraft."""
+"""M_α of the linear aircraft."""
 
 
 @pytest.fixture(scope="module")
 def states() -> list[CampaignState]:
-    """States during the first two manoeuvres of the bundled demonstration, about two a second."""
+    """States during two manoeuvres, about two a second."""
     return _during_two_manoeuvres(Aircraft(elevator=Elevator(lag_s=0.0)))
 
 
 def _during_two_manoeuvres(aircraft: Aircraft) -> list[CampaignState]:
     campaign = Campaign(aircraft, settle=True)
     states: list[CampaignState] = []
-    timeline = Timeline([columns for batch in open_log(SHIPPED / "bundled-demo.tlog") for columns in batch])
+    timeline = Timeline(
+        [columns for batch in open_log(recorded("linear", 1.0, maneuvers=TWO)) for columns in batch]
+    )
     for position_s in np.arange(0.0, timeline.duration_s, 0.5):
         campaign.feed(timeline.up_to(float(position_s)))
         state = campaign.state
@@ -38,7 +40,7 @@ def _during_two_manoeuvres(aircraft: Aircraft) -> list[CampaignState]:
             states.append(state)
         if len(state.maneuvers) == 2:
             return states
-    raise AssertionError("the demonstration has seven manoeuvres")
+    raise AssertionError("the flight has two manoeuvres")
 
 
 def test_no_number_is_readable_before_the_input_is_over(states):

@@ -14,6 +14,7 @@ from pathlib import Path
 import aiohttp
 import pytest
 
+from tests.flights import TWO, recorded
 from tests.mavlink.link.air import records_of
 from tests.mavlink.link.builders import free_port, wait_until
 from tests.mavlink.link.live import fly
@@ -128,9 +129,10 @@ def test_batch_runs_no_file_of_the_current_folder(started: Callable[..., Command
 
 
 def test_a_simulator_that_the_user_names_replaces_no_module_of_python(
-    started: Callable[..., Command], tmp_path: Path
+    started: Callable[..., Command],
 ) -> None:
-    command = started("gap", LOG, "--simulator", "python:nowhere_at_all:make")
+    log = recorded("linear", 1.0, maneuvers=TWO[:1])
+    command = started("gap", log, "--simulator", "python:nowhere_at_all:make")
     assert command.process.wait(60.0) == 2
     assert "No module named 'nowhere_at_all'" in command.err.read_text()
     assert command.ran == []

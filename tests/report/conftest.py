@@ -79,6 +79,6 @@ def said_of(log: Path, path: Path) -> Reported:
         content, _ = gather(LogsAsked((log,), path), load_aircraft(path), False)
     written = out.read_text(encoding="utf-8")
     return Reported(
-        log, recorded("linear", 1.0, maneuvers=TWO), path, written, replace(content, gap=found["gap"]),
+        log, recorded("linear", 1.0, maneuvers=TWO[:1]), path, written, replace(content, gap=found["gap"]),
         Page.read(written), found["analyze"], found["gap"], found["doctor"], printed,
     )  # fmt: skip

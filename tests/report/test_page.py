@@ -12,7 +12,7 @@ import pytest
 from advisor.aircraft.aircraft import Aircraft
 from advisor.cli.log_options import LogsAsked
 from advisor.cli.page_content import gather
-from advisor.report.page.drawing import draw
+from advisor.report.page import drawing
 from advisor.report.page.render import page
 from tests.campaign.states import changed
 from tests.conftest import Advisor
@@ -47,8 +47,11 @@ def test_every_reference_within_the_page_has_its_one_target(reported: Reported) 
 
 
 def test_the_same_flight_gives_the_same_page_to_the_byte_with_the_gap_that_gap_says(
-    reported: Reported,
+    reported: Reported, monkeypatch: pytest.MonkeyPatch
 ) -> None:
+    """The pictures are those of the page: that one is drawn alike is the fact of another test."""
+    pictures = iter(re.findall(r"<svg.*?</svg>", reported.written, re.DOTALL))
+    monkeypatch.setattr(drawing, "draw", lambda *_: next(pictures))
     assert page(reported.content, "html") == reported.written
 
 
@@ -57,8 +60,13 @@ def test_the_page_names_the_command_that_made_it(reported: Reported) -> None:
     assert command.startswith(f"advisor report {reported.log} --aircraft {reported.aircraft} --gap -o ")
 
 
-def test_a_figure_names_no_date_and_no_program() -> None:
-    svg = draw("one", 2.0, 1.0, lambda drawing: drawing.suptitle("one").set_color("black"))
+def test_a_figure_is_drawn_alike_each_time_and_names_no_date_and_no_program() -> None:
+    def paint(figure: drawing.Drawing) -> None:
+        figure.suptitle("one").set_color("black")
+        figure.add_subplot().plot([0.0, 1.0], [0.0, 1.0], clip_on=True)
+
+    svg, again = (drawing.draw("one", 2.0, 1.0, paint) for _ in range(2))
+    assert svg == again
     assert svg.startswith("<svg ")
     assert "metadata" not in svg
     assert "Matplotlib" not in svg

@@ -2,7 +2,6 @@
 
 import gc
 from collections.abc import Iterator
-from pathlib import Path
 
 import pytest
 from textual.css import stylesheet
@@ -19,10 +18,9 @@ from advisor.tui.sheets import Sheets
 from advisor.tui.themes import NAMES, THEMES
 from benchmarks.keys import says
 from benchmarks.terminal import terminal
+from tests.flights import TWO, recorded
 from tests.tui import flights
 from tests.tui.stage import Stage, stage
-
-LOG = Path(__file__).parents[2] / "logs" / "bundled-demo.tlog"
 
 
 @pytest.fixture
@@ -110,7 +108,8 @@ async def test_styles_of_the_other_themes_are_parsed_while_no_key_is_pressed(
 
 def test_the_name_of_a_theme_is_painted_with_its_colours(monkeypatch: pytest.MonkeyPatch):
     monkeypatch.setenv("COLORTERM", "truecolor")
-    with terminal(str(LOG), screen="engineer") as here:
+    log = recorded("linear", 1.0, maneuvers=TWO[:1])
+    with terminal(str(log), screen="engineer") as here:
         here.until(says("Manoeuvres"))
         for theme in THEMES[1:]:
             here.press(b"t")
