@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 from tests.conftest import Advisor
+from tests.flights import calm_two
 from tests.mavlink.link.builders import free_port
 
 LOGS = Path(__file__).parents[2] / "logs"
@@ -26,7 +27,7 @@ def test_a_log_at_default_rates_ends_with_3_a_sentence_and_still_a_document(advi
 
 
 def test_a_usable_log_is_told_in_words_verdict_first(advisor: Advisor) -> None:
-    run = advisor("doctor", LOGS / "arduplane-calm.tlog")
+    run = advisor("doctor", calm_two())
     assert run.returncode == 0
     assert run.stderr == ""
     first, *rest = run.stdout.splitlines()

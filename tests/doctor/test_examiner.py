@@ -14,8 +14,8 @@ from advisor.flight.signals.messages import Columns
 from advisor.flight.stream.stream import FlightStream
 from advisor.mavlink.logs.logs import open_log
 from tests.doctor.builders import flight, heartbeat
+from tests.flights import SHIPPED, calm_two
 
-LOGS = Path(__file__).parents[2] / "logs"
 WELL_KNOWN = Aircraft(
     elevator=Elevator(calibration=((1000.0, 25.0), (1500.0, 0.0), (2000.0, -25.0)), lag_s=0.05, delay_s=0.0)
 )
@@ -196,15 +196,15 @@ def test_on_px4_the_words_are_px4s() -> None:
 
 
 @cache
-def examined_log(name: str) -> Examination:
+def examined_log(log: Path) -> Examination:
     examiner = Examiner(Aircraft())
-    for columns in open_log(LOGS / name):
+    for columns in open_log(log):
         examiner.feed(columns)
     return examiner.findings()
 
 
 def test_a_recorded_calm_flight_is_usable_with_limits() -> None:
-    found = examined_log("arduplane-calm.tlog")
+    found = examined_log(calm_two())
     assert found.verdict == "usable with limits"
     assert "renewal" in limits(found)
     assert found.alpha is not None
@@ -215,7 +215,7 @@ def test_a_recorded_calm_flight_is_usable_with_limits() -> None:
 
 
 def test_a_recorded_flight_at_default_rates_is_not_usable() -> None:
-    found = examined_log("arduplane-default-rates.tlog")
+    found = examined_log(SHIPPED / "arduplane-default-rates.tlog")
     assert found.verdict == "not usable"
     assert found.expectation is not None
 
@@ -234,7 +234,7 @@ def test_a_model_is_believed_only_when_the_motion_bears_it_out() -> None:
 
 
 def test_the_document_keeps_the_contract() -> None:
-    document = doctor_document(examined_log("arduplane-calm.tlog"))
+    document = doctor_document(examined_log(calm_two()))
     assert document["schema"] == "advisor.doctor/1"
     assert document["usable"] is True
     assert document["verdict"] == "usable with limits"
