@@ -41,20 +41,20 @@ def test_no_number_that_decides_comes_from_the_code() -> None:
 @pytest.mark.parametrize(
     "text",
     [
-        "from advisor.doctor.instruments import LOSSY_PERCENT",
-        "from advisor.doctor.instruments import LOSSY_PERCENT as limit",
-        "from advisor.doctor import instruments\nprint(instruments.LOSSY_PERCENT)",
-        "def test():\n    import advisor.doctor.instruments as there\n    print(there.LOSSY_PERCENT)",
+        "from advisor.doctor.limits import LOSSY_PERCENT",
+        "from advisor.doctor.limits import LOSSY_PERCENT as limit",
+        "from advisor.doctor import limits\nprint(limits.LOSSY_PERCENT)",
+        "def test():\n    import advisor.doctor.limits as there\n    print(there.LOSSY_PERCENT)",
     ],
 )
 def test_a_limit_is_seen_however_it_is_taken(text: str) -> None:
-    assert list(taken_from_the_code(ast.parse(text))) == [("advisor.doctor.instruments", "LOSSY_PERCENT")]
+    assert list(taken_from_the_code(ast.parse(text))) == [("advisor.doctor.limits", "LOSSY_PERCENT")]
 
 
 @pytest.mark.parametrize(
     "text",
     [
-        "from advisor.doctor.instruments import loss_limits",
+        "from advisor.doctor.limits import loss_limits",
         "from advisor.aircraft.standard_gravity import GRAVITY_M_S2",
         "from advisor.decision.inputs import ORDERS",
         "from sim.airframe import GRAVITY_M_S2",

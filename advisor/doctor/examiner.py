@@ -11,7 +11,7 @@ from advisor.decision.first_unit import frequency
 from advisor.doctor.as_flown import assumed_of
 from advisor.doctor.examination import AlphaFound, ElevatorFound, Examination, Limit, in_order
 from advisor.doctor.expectation import Assumed, at_log_rates, expect
-from advisor.doctor.instruments import (
+from advisor.doctor.limits import (
     alpha_limits,
     clock_limits,
     clock_notes,

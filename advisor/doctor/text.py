@@ -9,7 +9,7 @@ from rich.text import Text
 from advisor.aircraft.reference import PARAMETERS
 from advisor.decision.first_unit import frequency
 from advisor.doctor.examination import Examination, Limit
-from advisor.doctor.instruments import STRAYED_SHARE
+from advisor.doctor.limits import STRAYED_SHARE
 from advisor.report.result_rows import message_table
 from advisor.words.plain import plain
 from advisor.words.printable import printable

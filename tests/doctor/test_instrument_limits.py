@@ -7,7 +7,7 @@ import pytest
 
 from advisor.aircraft.controls import Elevator
 from advisor.doctor.examination import ElevatorFound
-from advisor.doctor.instruments import (
+from advisor.doctor.limits import (
     alpha_limits,
     clock_limits,
     clock_notes,

@@ -9,7 +9,7 @@ from advisor.aircraft.controls import Elevator
 from advisor.decision.first_unit import frequency
 from advisor.doctor.examination import ElevatorFound, Limit
 from advisor.doctor.expectation import NOISE, TYPICAL, Assumed
-from advisor.doctor.instruments import elevator_limits, loss_limits, path_limits
+from advisor.doctor.limits import elevator_limits, loss_limits, path_limits
 from advisor.doctor.pace import Paced, rate_limits
 from advisor.flight.vehicle.vehicle import Vehicle
 

@@ -1,7 +1,7 @@
 """Messages that repeat old values under new stamps are named, and data are blamed before the file."""
 
 from advisor.doctor.examination import Limit, in_order
-from advisor.doctor.instruments import repeat_limits
+from advisor.doctor.limits import repeat_limits
 from advisor.doctor.survey import Arrival
 
 

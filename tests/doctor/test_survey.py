@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from advisor.doctor.instruments import clock_limits, clock_notes
+from advisor.doctor.limits import clock_limits, clock_notes
 from advisor.doctor.survey import Arrival, Survey
 from advisor.flight.signals.messages import Carrier, Columns
 from advisor.flight.vehicle.vehicle import Vehicle

@@ -8,7 +8,7 @@ import pytest
 from advisor.model.mil_f_8785c import CATEGORIES
 from advisor.oem.flying_qualities import flying_qualities
 from advisor.report.page.drawing import log_ticks
-from advisor.report.page.flying import ellipse, flying_chart
+from advisor.report.page.flying_qualities import ellipse, flying_chart
 from advisor.report.qualities import qualities_document
 from tests.oem.test_flying_qualities import HEAVY, THETA, TRUE, estimate, found
 

@@ -18,7 +18,7 @@ from advisor.report.page.estimates import estimates
 from advisor.report.page.fields import fields
 from advisor.report.page.fits import fits
 from advisor.report.page.flight_picture import flight_picture
-from advisor.report.page.flying import flying
+from advisor.report.page.flying_qualities import flying
 from advisor.report.page.gap import gap
 from advisor.report.page.headline import headline
 from advisor.report.page.maneuvers import maneuvers

@@ -1,4 +1,4 @@
-"""Defects of instruments and clocks that do not depend on message rates."""
+"""Limits of telemetry from defects of instruments and clocks that do not depend on message rates."""
 
 from collections.abc import Collection, Iterable
 
