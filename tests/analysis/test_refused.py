@@ -11,6 +11,7 @@ from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.flight.signals.instrument_finding import InstrumentFinding
 from advisor.flight.signals.record import Channel
 from advisor.words.problems import UnusableInputError
+from tests.maneuvers import changed
 from tests.simulators.nonlinear import flown
 
 
@@ -24,7 +25,7 @@ def with_hole(maneuver: Maneuver, seconds: float) -> Maneuver:
     """Return the manoeuvre without its pitch rate for some seconds after the first step."""
     q, start = maneuver.channels["q"], maneuver.span.start_s
     stays = (q.t < start) | (q.t > start + seconds)
-    return replace(maneuver, channels={**maneuver.channels, "q": replace(q, t=q.t[stays], y=q.y[stays])})
+    return changed(maneuver, "q", t=q.t[stays], y=q.y[stays])
 
 
 def test_a_turn_and_a_hole_in_the_record_are_named_and_not_used():

@@ -23,6 +23,7 @@ from sim.effects.fitting import flight_of
 from sim.record import write_tlog
 from sim.scenario import Air, Maneuver, Noise, Scenario
 from tests.heard import hear
+from tests.maneuvers import changed, without
 
 # The flight of bad manoeuvres is flown once.
 pytestmark = pytest.mark.xdist_group("bad manoeuvres")
@@ -95,8 +96,7 @@ def test_a_limit_refuses_nothing_where_the_estimate_holds(code):
 @pytest.mark.parametrize("name", ["beta", "p", "r"])
 def test_the_bank_has_its_limit_where_the_record_lacks_a_part_of_the_turn(name):
     maneuver, estimated, _ = bad_flight()[1 + list(BAD_MANOEUVRES).index("bank")]
-    channels = {key: channel for key, channel in maneuver.channels.items() if key != name}
-    found = judge("pitch", replace(maneuver, channels=channels), estimated, AIRCRAFT)
+    found = judge("pitch", without(maneuver, name), estimated, AIRCRAFT)
     assert [reason.code for reason in found] == ["bank"]
 
 
@@ -257,16 +257,14 @@ def test_an_aircraft_without_an_angle_of_attack_is_lived_with():
 
 def test_a_manoeuvre_without_pitch_rate_says_so_and_nothing_else():
     maneuver, estimated, _ = bad_flight()[0]
-    without = {name: channel for name, channel in maneuver.channels.items() if name != "q"}
-    (reason,) = judge("pitch", replace(maneuver, channels=without), estimated, AIRCRAFT)
+    (reason,) = judge("pitch", without(maneuver, "q"), estimated, AIRCRAFT)
     assert reason.code == "missing"
 
 
 def test_a_pitch_rate_that_stands_still_is_a_broken_gyro_and_no_gentle_input():
     maneuver, estimated, _ = bad_flight()[0]
     rate = maneuver.channels["q"]
-    frozen = {**maneuver.channels, "q": replace(rate, y=np.zeros_like(rate.y))}
-    (reason,) = judge("pitch", replace(maneuver, channels=frozen), estimated, AIRCRAFT)
+    (reason,) = judge("pitch", changed(maneuver, "q", y=np.zeros_like(rate.y)), estimated, AIRCRAFT)
     assert reason.code == "frozen"
     assert "check the gyro" in reason.text
 
@@ -312,8 +310,7 @@ def test_a_period_is_not_read_off_a_fit_that_explains_little_or_an_uncertain_sti
 def without_late_airspeed(maneuver, after_s, *missing):
     """The manoeuvre whose air speed ends some time after the first step, without further channels."""
     speed = maneuver.channels["airspeed"].cut(0.0, maneuver.span.start_s + after_s)
-    kept = {name: channel for name, channel in maneuver.channels.items() if name not in missing}
-    return replace(maneuver, channels={**kept, "airspeed": speed})
+    return changed(without(maneuver, *missing), "airspeed", t=speed.t, y=speed.y)
 
 
 def test_an_air_speed_that_ends_is_missed_where_no_accelerometer_carries_it():
@@ -338,8 +335,7 @@ def test_a_pitch_angle_that_ends_is_missed():
 def test_no_amplitude_is_judged_beyond_a_limit_of_the_model():
     maneuver, estimated, _ = bad_flight()[1]
     assert judge("pitch", maneuver, estimated, AIRCRAFT)[0].code == "amplitude"
-    rolled = replace(maneuver.channels["bank"], y=np.full(len(maneuver.channels["bank"].t), 3.0))
-    banked = replace(maneuver, channels={**maneuver.channels, "bank": rolled})
+    banked = changed(maneuver, "bank", y=np.full(len(maneuver.channels["bank"].t), 3.0))
     codes = [reason.code for reason in judge("pitch", banked, estimated, AIRCRAFT)]
     assert codes[0] == "bank"
     assert "amplitude" not in codes

@@ -10,6 +10,7 @@ from advisor.gap.records.prepare import prepare
 from advisor.gap.records.unmeasured_alpha import is_estimate
 from tests.gap.generator import Setup, fly
 from tests.gap.studied_flights import estimated
+from tests.maneuvers import changed
 
 
 @pytest.mark.parametrize(("share", "of_estimator"), [(slice(None, None, 5), True), (slice(None), False)])
@@ -18,8 +19,8 @@ def test_an_angle_of_attack_that_is_renewed_as_slowly_as_arduplanes_is_an_estima
 ):
     (flown,) = fly(Setup(maneuvers=1, seed=71))
     alpha = flown.channels["alpha"]
-    sent = replace(alpha, t=alpha.t[share], y=alpha.y[share], source="AOA_SSA.AOA", provenance="derived")
-    assert is_estimate(replace(flown, channels={**flown.channels, "alpha": sent}), False) == of_estimator
+    sent = {"t": alpha.t[share], "y": alpha.y[share], "source": "AOA_SSA.AOA", "provenance": "derived"}
+    assert is_estimate(changed(flown, "alpha", **sent), False) == of_estimator
 
 
 def test_a_smooth_estimate_of_the_angle_of_attack_says_nothing_of_the_noise_of_other_channels():

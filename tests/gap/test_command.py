@@ -17,6 +17,7 @@ from sim.record import record
 from sim.scenario import read_scenario
 from tests.flights import FOLDER
 from tests.gap.generator import Setup, fly
+from tests.maneuvers import changed
 
 UAV = """
 aircraft: uav
@@ -51,8 +52,7 @@ def test_a_delay_of_nearly_an_interval_is_not_taken_for_a_held_command_that_is_h
 def without(maneuver, lost):
     """Return the manoeuvre without some stamps of its command."""
     elevator = maneuver.channels["elevator"]
-    kept = replace(elevator, t=elevator.t[~lost], y=elevator.y[~lost])
-    return replace(maneuver, channels={**maneuver.channels, "elevator": kept})
+    return changed(maneuver, "elevator", t=elevator.t[~lost], y=elevator.y[~lost])
 
 
 def test_a_held_command_of_which_steps_were_lost_is_still_held():
@@ -85,6 +85,5 @@ def test_in_a_hole_of_the_log_a_whole_pulse_may_be_hidden_but_not_in_a_short_one
     # To and fro for as long as the manoeuvre takes: before the hole the command is what it is after it.
     command = np.where((ago > 0.0) & (t < span.last_step_s), 0.03 * np.where(ago % 1.0 < 0.5, 1.0, -1.0), 0.0)
     heard = (ago < hole_s[0]) | (ago > hole_s[1])
-    elevator = replace(flown[2].channels["elevator"], t=t[heard], y=command[heard])
-    flown[2] = replace(flown[2], channels={**flown[2].channels, "elevator": elevator})
+    flown[2] = changed(flown[2], "elevator", t=t[heard], y=command[heard])
     assert (3 not in [m.number for m in usable_of(flown)]) is is_hidden

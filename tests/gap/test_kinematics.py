@@ -9,6 +9,7 @@ from advisor.flight.instruments.delayed_fit import coloured_covariance
 from advisor.flight.instruments.kinematics import check_alpha, combine
 from advisor.gap.uncatalogued.wind_shear import wind_shear
 from tests.gap.generator import LIGHT_AIRCRAFT, Setup, fly
+from tests.maneuvers import changed, without
 
 
 def flown(seed=5, **changes):
@@ -52,14 +53,8 @@ def test_a_turn_spoils_neither_the_lag_nor_the_offset_of_alpha(late_s):
     assert abs(found.lag_s - late_s) < 0.002 + 3 * found.lag_std_s
 
 
-def without_accelerometer(maneuvers):
-    return [
-        replace(m, channels={name: c for name, c in m.channels.items() if name != "a_z"}) for m in maneuvers
-    ]
-
-
 def test_a_constant_offset_shows_without_an_accelerometer_too():
-    found = combine([check_alpha(m) for m in without_accelerometer(flown(alpha_bias=0.01))])
+    found = combine([check_alpha(m) for m in [without(one, "a_z") for one in flown(alpha_bias=0.01)]])
     assert found.finding == "not possible"
     assert found.offset.rad == pytest.approx(0.01, abs=0.001)
 
@@ -83,7 +78,7 @@ def test_a_repeated_alpha_is_used_at_its_true_rate():
     maneuver = flown()[0]
     channel = maneuver.channels["alpha"]
     held = np.repeat(channel.y[::3], 3)[: len(channel)]
-    staircase = replace(maneuver, channels={**maneuver.channels, "alpha": replace(channel, y=held)})
+    staircase = changed(maneuver, "alpha", y=held)
     assert abs(check_alpha(staircase).lag_s) < 0.005
 
 
@@ -110,7 +105,7 @@ def test_air_that_begins_to_sink_is_no_offset_of_the_angle_of_attack():
         alpha = m.channels["alpha"]
         began = alpha.t > alpha.t[0] + 2.5
         for course, shift in ((offset, np.full(len(alpha), -0.03)), (sunk, -0.03 * began)):
-            course.append(replace(m, channels={**m.channels, "alpha": replace(alpha, y=alpha.y + shift)}))
+            course.append(changed(m, "alpha", y=alpha.y + shift))
     constant, begun = (combine([check_alpha(m) for m in course]) for course in (offset, sunk))
     assert constant.offset.stays
     assert constant.offset.rad == pytest.approx(-0.03, abs=0.003)
@@ -122,7 +117,7 @@ def blown(maneuver, gradient):
     speed, climb = maneuver.channels["airspeed"], maneuver.channels["climb_rate"]
     height = np.concatenate(([0.0], np.cumsum(np.diff(climb.t) * (climb.y[1:] + climb.y[:-1]) / 2.0)))
     y = speed.y + gradient * np.interp(speed.t, climb.t, height)
-    return replace(maneuver, channels={**maneuver.channels, "airspeed": replace(speed, y=y)})
+    return changed(maneuver, "airspeed", y=y)
 
 
 def test_heights_that_explain_next_to_nothing_of_the_air_speeds_own_motion_are_no_wind():
@@ -131,7 +126,7 @@ def test_heights_that_explain_next_to_nothing_of_the_air_speeds_own_motion_are_n
         sheared = blown(maneuver, 0.15)
         speed = sheared.channels["airspeed"]
         y = speed.y + 1.2 * np.sin(2.0 * np.pi * (0.4 * speed.t + rng.random()))
-        swung.append(replace(sheared, channels={**sheared.channels, "airspeed": replace(speed, y=y)}))
+        swung.append(changed(sheared, "airspeed", y=y))
     assert wind_shear(swung) is None
 
 
@@ -141,7 +136,7 @@ def late(maneuver, by_s):
     y = speed.y.copy()
     for i in range(1, len(y)):
         y[i] = y[i - 1] + (speed.y[i] - y[i - 1]) * -np.expm1((speed.t[i - 1] - speed.t[i]) / by_s)
-    return replace(maneuver, channels={**maneuver.channels, "airspeed": replace(speed, y=y)})
+    return changed(maneuver, "airspeed", y=y)
 
 
 def test_no_wind_changes_by_most_of_its_own_speed_in_a_metre():
@@ -174,7 +169,7 @@ def test_a_wind_that_all_manoeuvres_agree_on_is_plain_though_the_air_speed_is_ro
         sheared = blown(maneuver, 0.2)
         speed = sheared.channels["airspeed"]
         y = speed.y + 0.4 * rng.standard_normal(len(speed.y))
-        rough.append(replace(sheared, channels={**sheared.channels, "airspeed": replace(speed, y=y)}))
+        rough.append(changed(sheared, "airspeed", y=y))
     found = wind_shear(rough)
     assert found.share < 0.25
     assert found.gradient_per_s == pytest.approx(0.2, abs=0.05)
@@ -186,8 +181,7 @@ def test_a_rough_beginning_of_the_records_makes_no_air_speed_late():
         sheared = blown(maneuver, 0.2)
         speed = sheared.channels["airspeed"]
         noise = np.where(speed.t - speed.t[0] < 0.9, 0.7, 0.03) * rng.standard_normal(len(speed.t))
-        channels = {**sheared.channels, "airspeed": replace(speed, y=speed.y + noise)}
-        shaken.append(replace(sheared, channels=channels))
+        shaken.append(changed(sheared, "airspeed", y=speed.y + noise))
     assert wind_shear(shaken).gradient_per_s == pytest.approx(0.2, abs=0.02)
 
 
@@ -222,7 +216,7 @@ def test_a_layer_of_wind_is_told_by_two_manoeuvres_that_cross_its_edge():
     for m in fly(Setup(seed=11, heights_m=heights)):
         speed, height = m.channels["airspeed"], m.channels["height"]
         wind = 0.4 * np.clip(np.interp(speed.t, height.t, height.y) - 150.0, -10.0, 10.0)
-        sheared.append(replace(m, channels={**m.channels, "airspeed": replace(speed, y=speed.y + wind)}))
+        sheared.append(changed(m, "airspeed", y=speed.y + wind))
     found = wind_shear(sheared)
     assert abs(found.gradient_per_s - 0.4) < 0.1
     # One that was flown in it agrees with no other.

@@ -17,6 +17,7 @@ from advisor.gap.simulator.layout import ENTRIES, INDEX
 from advisor.gap.verdict.causes import parameters_of
 from sim.effects.terms import problems_with
 from tests.gap.generator import Setup, fly
+from tests.maneuvers import changed
 
 
 @pytest.fixture(scope="module")
@@ -46,12 +47,7 @@ def test_numbers_of_the_file_become_the_simulations_own(late):
 @pytest.mark.parametrize("effect", EFFECTS)
 def test_a_file_may_have_any_effect_of_the_catalogue(effect):
     flown = fly(Setup(maneuvers=3, heights_m=(5.0, 9.0, 7.0), thrust_amplitude=1.0, speed_change=0.1))
-    moved = [
-        replace(
-            m, channels={**m.channels, "elevator": replace(c := m.channels["elevator"], y=c.y + 0.01 * k)}
-        )
-        for k, m in enumerate(flown)
-    ]
+    moved = [changed(m, "elevator", y=m.channels["elevator"].y + 0.01 * k) for k, m in enumerate(flown)]
     flights = prepare(moved, Aircraft())
     effects = {effect: dict.fromkeys(EFFECTS[effect].keys, 0.02)}
     problem = EffectProblem(
@@ -111,9 +107,7 @@ def test_a_curve_keeps_the_angle_that_the_file_states_wherever_it_is_flown():
 def test_a_dead_band_keeps_the_deflection_that_the_file_states_whatever_the_trim():
     flown = []
     for maneuver, above in zip(fly(Setup(maneuvers=3, seed=10)), (0.03, -0.02, 0.01), strict=True):
-        command = maneuver.channels["elevator"]
-        moved = replace(command, y=command.y + above)
-        flown.append(replace(maneuver, channels={**maneuver.channels, "elevator": moved}))
+        flown.append(changed(maneuver, "elevator", y=maneuver.channels["elevator"].y + above))
     flights = prepare(flown, Aircraft())
     effects = {"actuator_deadband": {"half_width_rad": 0.012, "neutral_rad": -0.02}}
     numbers = with_known(np.zeros(len(ENTRIES)), effects, flights, variants_for(flights))

@@ -14,6 +14,7 @@ from advisor.gap.records.prepare import prepare
 from advisor.gap.search.baseline import fit_baseline
 from advisor.gap.simulator.layout import DERIVATIVES
 from tests.gap.generator import Setup, fly
+from tests.maneuvers import changed
 
 
 @pytest.fixture(scope="module")
@@ -22,11 +23,7 @@ def late():
     maneuvers = fly(Setup(maneuvers=3, seed=8))
     _, fitted = fit_baseline(prepare(maneuvers, Aircraft()), Aircraft())
     right = fitted.point.derivatives
-    shifted = []
-    for one in maneuvers:
-        command = one.channels["elevator"]
-        command = replace(command, t=command.t - 0.012)
-        shifted.append(replace(one, channels={**one.channels, "elevator": command}))
+    shifted = [changed(m, "elevator", t=m.channels["elevator"].t - 0.012) for m in maneuvers]
     file = Aircraft(model=dict(zip(DERIVATIVES, map(float, right), strict=True)))
     return (*fit_baseline(prepare(shifted, file), file), right)
 
@@ -62,7 +59,7 @@ def test_every_model_has_the_bias_of_its_gyro_as_wide_as_data_sheets_state_it():
     biased = []
     for one in fly(Setup(maneuvers=3, seed=9)):
         q = one.channels["q"]
-        biased.append(replace(one, channels={**one.channels, "q": replace(q, y=q.y + np.radians(0.13))}))
+        biased.append(changed(one, "q", y=q.y + np.radians(0.13)))
     _, fitted = fit_baseline(prepare(biased, Aircraft()), Aircraft())
     bias = fitted.point.values[fitted.point.effects.index(GYRO)]
     assert np.degrees(bias) == pytest.approx([0.13], abs=0.02)

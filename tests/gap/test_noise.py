@@ -1,7 +1,5 @@
 """The noise of a flight: what neighbouring samples have in common is found, and counted once."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 
@@ -17,6 +15,7 @@ from advisor.oem.driven_motion.noise import Noise
 from advisor.oem.short_period_motion import short_period_motion
 from advisor.oem.turbulence import Rows, cost_of
 from tests.gap.generator import Setup, fly
+from tests.maneuvers import changed
 
 SYSTEM = np.array([-4.3, -0.03, -37.0, -4.8])
 SPEED = 22.0
@@ -94,8 +93,8 @@ def test_wrong_stamps_are_read_from_the_roughness_of_a_residual_and_uneven_ones_
     maneuvers = []
     for maneuver in fly(Setup(maneuvers=4, jitter=0.004, noise=0.005, seed=11)):
         whole = maneuver.channels[channel]
-        wrong = replace(whole, t=np.sort(whole.t + rng.uniform(-jitter, jitter, len(whole))))
-        maneuvers.append(replace(maneuver, channels={**maneuver.channels, channel: wrong}))
+        stamps = np.sort(whole.t + rng.uniform(-jitter, jitter, len(whole)))
+        maneuvers.append(changed(maneuver, channel, t=stamps))
     problem, fitted = fit_baseline(prepare(maneuvers, Aircraft()), Aircraft())
     found = stamp_jitter(problem, fitted, rates_of(problem, fitted))
     # Uniform over ±jitter: its standard deviation is jitter/√3.

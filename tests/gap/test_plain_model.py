@@ -28,15 +28,11 @@ from advisor.gap.simulator.layout import SPEED
 from advisor.oem.instruments import COMMAND_DELAY
 from advisor.oem.prepare import prepare as prepare_estimate
 from tests.gap.generator import Setup, fly
+from tests.maneuvers import changed, without
 
 FLOWN = fly(Setup(maneuvers=3, seed=71))
 IMU = ("q", "a_z")
 DERIVATIVES = np.array([-4.0, 0.0, -0.3, -30.0, -4.0, -45.0])
-
-
-def changed(maneuver, name, **fields):
-    channel = replace(maneuver.channels[name], **fields)
-    return replace(maneuver, channels={**maneuver.channels, name: channel})
 
 
 def variant(flights, effect):
@@ -105,11 +101,7 @@ def test_the_plain_model_predicts_under_its_own_prior_beside_an_effect_at_the_fi
 
 
 def test_an_air_speed_that_is_read_low_is_part_of_the_plain_model_without_an_angle_of_attack():
-    low = []
-    for m in FLOWN:
-        read = replace(m.channels["airspeed"], y=0.95 * m.channels["airspeed"].y)
-        seen = {name: one for name, one in m.channels.items() if name != "alpha"}
-        low.append(replace(m, channels={**seen, "airspeed": read}))
+    low = [changed(without(m, "alpha"), "airspeed", y=0.95 * m.channels["airspeed"].y) for m in FLOWN]
     flights = prepare(low, Aircraft())
     assert "alpha" not in flights.channels
     point = fit_unfiltered(flights, Aircraft())[1].point

@@ -14,6 +14,7 @@ from advisor.gap.records.unmeasured_speed import speed_of_the_motion
 from advisor.gap.simulator.layout import SPEED
 from advisor.oem.airspeed import airspeed
 from tests.gap.generator import UAV, Setup, fly
+from tests.maneuvers import changed, without
 
 HEIGHTS = (80.0, 90.0, 85.0)
 
@@ -21,9 +22,7 @@ HEIGHTS = (80.0, 90.0, 85.0)
 @pytest.mark.parametrize("share", [0.9, 1.1])
 def test_a_speed_at_which_nothing_flies_is_none_to_estimator_and_diagnosis_alike(share):
     flown = fly(Setup(maneuvers=1))[0]
-    speed = flown.channels["airspeed"]
-    slow = replace(speed, y=np.full(len(speed), share * 4.0))
-    maneuver = replace(flown, channels={**flown.channels, "airspeed": slow})
+    maneuver = changed(flown, "airspeed", y=np.full(len(flown.channels["airspeed"]), share * 4.0))
     assert measures_speed(maneuver) == (share > 1.0)
     assert (airspeed(maneuver.channels) is not None) == (share > 1.0)
 
@@ -36,9 +35,7 @@ def test_a_power_of_the_speed_is_not_looked_for_where_the_speed_hardly_moved():
 
 
 def without_instrument(flown):
-    return [
-        replace(m, channels={name: c for name, c in m.channels.items() if name != "airspeed"}) for m in flown
-    ]
+    return [without(m, "airspeed") for m in flown]
 
 
 def test_without_an_air_speed_in_the_log_the_accelerometers_show_how_it_changes():

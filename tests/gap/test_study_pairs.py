@@ -18,6 +18,7 @@ from tests.gap.diagnosed import diagnose
 from tests.gap.generator import UAV, Setup, fly
 from tests.gap.studied_flights import MODEL, SERVO, arduplane, estimated, later, put_into, read, reading, six
 from tests.gap.studies import right_file
+from tests.maneuvers import without
 
 pytestmark = pytest.mark.study
 
@@ -191,9 +192,7 @@ def test_what_only_a_manoeuvre_kept_out_could_tell_is_measured_there():
 
 
 def without_airspeed(flown):
-    return [
-        replace(m, channels={name: c for name, c in m.channels.items() if name != "airspeed"}) for m in flown
-    ]
+    return [without(m, "airspeed") for m in flown]
 
 
 def test_a_speed_that_the_motion_shows_serves_as_well_as_one_that_the_file_states():

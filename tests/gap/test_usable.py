@@ -9,13 +9,9 @@ from advisor.aircraft.aircraft import Aircraft
 from advisor.gap.records.prepare import prepare
 from advisor.gap.records.usable import condensed, usable_of
 from tests.gap.generator import Setup, fly
+from tests.maneuvers import without
 
 FLOWN = fly(Setup(maneuvers=6, seed=71))
-
-
-def without(maneuver, *names):
-    channels = {name: c for name, c in maneuver.channels.items() if name not in names}
-    return replace(maneuver, channels=channels)
 
 
 def ending(maneuver, name, seconds):

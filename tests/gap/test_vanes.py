@@ -8,15 +8,7 @@ from advisor.gap.records.prepare import prepare
 from advisor.gap.search.baseline import fit_baseline
 from advisor.gap.simulator.layout import INDEX
 from tests.gap.generator import Setup, fly
-
-
-def rubbed(angles, half_play):
-    """Return the angles of a pointer that follows once the vane has run ahead by half the play."""
-    shown = [angles[0]]
-    for angle in angles[1:]:
-        ahead = angle - shown[-1]
-        shown.append(shown[-1] + np.sign(ahead) * max(abs(ahead) - half_play, 0.0))
-    return np.array(shown)
+from tests.gap.studied_flights import rubbed
 
 
 @pytest.fixture(scope="module")

@@ -1,5 +1,3 @@
-from dataclasses import replace
-
 import numpy as np
 import pytest
 
@@ -12,6 +10,7 @@ from advisor.oem.estimator import estimate
 from advisor.oem.following import Follower
 from advisor.oem.identifiability import natural_size
 from advisor.report.document import identifiability
+from tests.maneuvers import changed
 from tests.oem.builders import JET, UAV, elevator_3211, flown, maneuver, trim_alpha, trim_elevator
 
 AIRCRAFT = Aircraft(elevator=Elevator(lag_s=0.0))
@@ -36,9 +35,7 @@ def test_the_refreshed_estimate_is_the_complete_one():
 
 def test_a_refresh_allows_for_a_command_that_acts_late():
     flight = flown(JET, noise=0.03)
-    command = flight.channels["elevator"]
-    early = replace(command, t=command.t - 0.015)
-    flight = replace(flight, channels={**flight.channels, "elevator": early})
+    flight = changed(flight, "elevator", t=flight.channels["elevator"].t - 0.015)
     followed = Follower(AIRCRAFT).refresh(flight)
     assert isinstance(followed, Estimate)
     np.testing.assert_array_less(np.abs(followed.theta - JET)[5:], 3.0 * followed.std[5:])

@@ -23,6 +23,7 @@ from advisor.simulators.compare import Compared
 from advisor.simulators.unseen import sized_without
 from advisor.words.problems import UnusableInputError
 from tests.exports.models.test_orders import found
+from tests.maneuvers import changed
 from tests.simulators.nonlinear import flown
 
 FILE = Aircraft(name="glider", model={"M_alpha": -40.0})
@@ -172,7 +173,7 @@ def test_sizes_are_those_of_a_fit_that_has_not_seen_the_manoeuvres_kept_apart(ke
     """The third manoeuvre's elevator moved half as far as logged, which contradicts the other two."""
     *others, third = flown(maneuvers=3)
     logged = third.channels["elevator"]
-    strange = replace(third, channels={**third.channels, "elevator": replace(logged, y=2.0 * logged.y)})
+    strange = changed(third, "elevator", y=2.0 * logged.y)
 
     def fitted(maneuvers):
         flights = prepare(maneuvers, FILE)
@@ -194,11 +195,7 @@ def test_sizes_are_those_of_a_fit_that_has_not_seen_the_manoeuvres_kept_apart(ke
 def test_sizes_are_fitted_to_the_flight_of_their_model():
     """The elevator of one flight moved half as far as logged in the other, and so answers twice as much."""
     logged = flown(maneuvers=2)
-    half = [
-        replace(m, channels={**m.channels, "elevator": replace(e, y=0.5 * e.y)})
-        for m in logged
-        if (e := m.channels["elevator"])
-    ]
+    half = [changed(m, "elevator", y=0.5 * e.y) for m in logged if (e := m.channels["elevator"])]
     flights, others = (prepare(maneuvers, FILE) for maneuvers in (logged, half))
     start = SearchPoint(np.array([-2.7, 0.0, -0.15, -23.0, -3.4, -29.0]), np.zeros((2, len(NUISANCES))))
     problem = EffectProblem(flights, np.zeros(len(ENTRIES)))

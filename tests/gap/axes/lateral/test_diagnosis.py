@@ -32,6 +32,7 @@ from advisor.report.gap_document import axis_document, gap_document
 from benchmarks.lateral_gap import CASES, diagnosed
 from tests.gap.axes.lateral.test_comparison import maneuvers
 from tests.gap.test_report_screen import printed
+from tests.maneuvers import changed
 from tests.oem.axes.lateral.builders import JET
 from tests.schemas import breaches
 
@@ -138,11 +139,7 @@ def diagnosed_with(reading):
     """Return the diagnosis of a flight whose roll rate is read by a function of the true one: about 8 s."""
     known = SideControl(lag_s=0.0, delay_s=0.0)
     aircraft = Aircraft(aileron=known, rudder=known, beta=Beta("none"), model=dict(JET))
-    flight = []
-    for maneuver in maneuvers():
-        rate = maneuver.channels["p"]
-        read = replace(rate, y=reading(rate.y))
-        flight.append(replace(maneuver, channels={**maneuver.channels, "p": read}))
+    flight = [changed(m, "p", y=reading(m.channels["p"].y)) for m in maneuvers()]
     return diagnose_side(case_of(flight, aircraft, np.array([JET[name] for name in SIDE_PARAMETERS])))
 
 
