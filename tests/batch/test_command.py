@@ -1,7 +1,6 @@
 """``advisor batch``: the numbers of ``analyze``, each log once, failures listed, resumable."""
 
 import json
-import resource
 import shutil
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
@@ -24,6 +23,7 @@ from sim.record import record
 from sim.scenario import Noise, Scenario
 from tests.conftest import Advisor
 from tests.flights import SHIPPED, TWO, recorded
+from tests.full_disk import files_of_at_most
 
 Work = Callable[[BatchTask], Analyzed]
 Results = Iterator[tuple[BatchTask, Analyzed | Exception]]
@@ -173,12 +173,8 @@ def _flown(log: str, system: int) -> Analyzed:
 def test_a_disk_that_fills_up_ends_the_batch_with_one_sentence_and_no_half_result(
     folder: Path, advisor: Advisor, tmp_path: Path
 ) -> None:
-    before = resource.getrlimit(resource.RLIMIT_FSIZE)
-    resource.setrlimit(resource.RLIMIT_FSIZE, (5_000, before[1]))
-    try:
+    with files_of_at_most(5_000):
         run = advisor("batch", folder / "flight-11.tlog", "-o", tmp_path / "out", "--workers", 1)
-    finally:
-        resource.setrlimit(resource.RLIMIT_FSIZE, before)
     assert (run.returncode, run.stderr.count("\n")) == (2, 1)
     assert run.stderr.startswith(f"-o: {tmp_path / 'out'} cannot be written to: File too large.")
     assert [path for path in (tmp_path / "out").rglob("*") if path.is_file()] == []

@@ -1,9 +1,7 @@
 """The page stands alone, repeats to the byte, and is whole or not there."""
 
 import re
-import resource
 import sys
-from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 
@@ -17,6 +15,7 @@ from advisor.report.page.render import page
 from tests.campaign.states import changed
 from tests.conftest import Advisor
 from tests.flights import SHIPPED
+from tests.full_disk import files_of_at_most
 from tests.report.conftest import Reported
 
 USELESS = SHIPPED / "arduplane-default-rates.tlog"
@@ -109,22 +108,13 @@ def test_a_missing_library_is_named_with_the_line_that_installs_it(
     assert answer.stderr.strip() == "advisor report needs jinja2: pip install 'inflight-advisor[report]'."
 
 
-@pytest.fixture
-def full_disk() -> Iterator[None]:
-    """No file may grow beyond five kilobytes."""
-    before = resource.getrlimit(resource.RLIMIT_FSIZE)
-    resource.setrlimit(resource.RLIMIT_FSIZE, (5_000, before[1]))
-    yield
-    resource.setrlimit(resource.RLIMIT_FSIZE, before)
-
-
-@pytest.mark.usefixtures("full_disk")
 def test_a_full_disk_leaves_the_old_page_and_no_half_one(
     advisor: Advisor, reported: Reported, tmp_path: Path
 ) -> None:
     out = tmp_path / "page.md"
     out.write_text("the page of yesterday", encoding="utf-8")
-    answer = advisor("report", reported.short_log, "-o", out)
+    with files_of_at_most(5_000):
+        answer = advisor("report", reported.short_log, "-o", out)
     assert (answer.returncode, answer.stderr.count("\n")) == (2, 1)
     assert answer.stderr.startswith(f"-o: {out} cannot be written to: File too large.")
     assert [path.name for path in tmp_path.iterdir()] == ["page.md"]

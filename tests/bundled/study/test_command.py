@@ -1,7 +1,6 @@
 """``advisor study`` as a user calls it."""
 
 import json
-import resource
 from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 
@@ -15,6 +14,7 @@ from advisor.cli.study import command
 from advisor.process.tasks import processes
 from advisor.process.tasks.runner import run_here
 from advisor.words.problems import ConfigurationError
+from tests.full_disk import files_of_at_most
 from tests.schemas import breaches
 
 # The study runs once for each figure.
@@ -66,13 +66,8 @@ def test_figure_five_is_written_as_a_picture(pictured: dict[Path, Result]) -> No
 def test_a_disk_that_fills_up_leaves_the_old_figure_and_no_half_one(tmp_path: Path) -> None:
     figure = tmp_path / "figure.svg"
     figure.write_text("the figure of yesterday")
-    before = resource.getrlimit(resource.RLIMIT_FSIZE)
-    resource.setrlimit(resource.RLIMIT_FSIZE, (5_000, before[1]))
-    try:
-        with pytest.raises(OSError, match="File too large"):
-            draw([Curve("continuous", 1.0, (None, (1.0, 2.0, 3.0)))], figure)
-    finally:
-        resource.setrlimit(resource.RLIMIT_FSIZE, before)
+    with files_of_at_most(5_000), pytest.raises(OSError, match="File too large"):
+        draw([Curve("continuous", 1.0, (None, (1.0, 2.0, 3.0)))], figure)
     assert [path.read_text() for path in tmp_path.iterdir()] == ["the figure of yesterday"]
 
 

@@ -1,8 +1,6 @@
 """``advisor export`` on bad input: one sentence, the exit code, and nothing half-written."""
 
-import resource
 import sys
-from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -12,6 +10,7 @@ from advisor.words.problems import ConfigurationError
 from tests.conftest import Advisor
 from tests.exports.flights.conftest import Exported
 from tests.flights import TWO, recorded
+from tests.full_disk import files_of_at_most
 
 pytestmark = pytest.mark.usefixtures("recorded_analyses")
 
@@ -101,20 +100,12 @@ def test_the_input_is_not_written_over(exported: Exported, advisor: Advisor, tmp
     assert log.read_bytes() == exported.log.read_bytes()
 
 
-@pytest.fixture
-def nearly_full_disk(exported: Exported) -> Iterator[None]:
-    """A limit on the size of files stands for the disk: the smaller tables fit, the grid does not."""
-    before = resource.getrlimit(resource.RLIMIT_FSIZE)
-    resource.setrlimit(resource.RLIMIT_FSIZE, (300_000, before[1]))
-    yield
-    resource.setrlimit(resource.RLIMIT_FSIZE, before)
-
-
-@pytest.mark.usefixtures("nearly_full_disk")
 def test_a_disk_that_is_full_in_the_middle_leaves_nothing_behind(
     exported: Exported, advisor: Advisor, tmp_path: Path
 ) -> None:
-    run = advisor("export", exported.log, "-o", tmp_path / "out")
+    """The smaller tables fit, the grid does not."""
+    with files_of_at_most(300_000):
+        run = advisor("export", exported.log, "-o", tmp_path / "out")
     assert run.returncode == 2
     assert "File too large. Make room or name another place." in run.stderr
     assert "Traceback" not in run.stderr
