@@ -56,11 +56,11 @@ def beyond_known(effects: Effects, variants: Sequence[Variant]) -> list[Variant]
     parameter may differ from the file's value; the shape of any other effect is fixed."""
     left = []
     for variant in variants:
-        known = {} if EFFECTS[variant.effect].of_one_flight else effects.get(variant.effect, {})
-        if known.keys().isdisjoint(variant.names):
+        stated = {} if EFFECTS[variant.effect].of_one_flight else effects.get(variant.effect, {})
+        if stated.keys().isdisjoint(variant.names):
             left.append(variant)
-        elif len(variant.names) == 1 and not variant.inverted and _is_meant(variant, known, variants):
-            left.append(_beyond(variant, known[variant.names[0]]))
+        elif len(variant.names) == 1 and not variant.inverted and _is_meant(variant, stated, variants):
+            left.append(_beyond(variant, stated[variant.names[0]]))
     return left
 
 
@@ -69,11 +69,11 @@ def beyond_servo(aircraft: Aircraft, variants: Sequence[Variant]) -> list[Varian
 
     A servo may be quicker than the file states, and a stated delay may not exist.
     """
-    found = []
+    beyond = []
     for variant in variants:
         stated = None if variant.fixed else stated_in(aircraft, variant.effect)
-        found.append(_beyond(variant, stated) if stated else variant)
-    return found
+        beyond.append(_beyond(variant, stated) if stated else variant)
+    return beyond
 
 
 def less_of_the_servo(
@@ -112,14 +112,14 @@ def left_aside(effects: Effects, *shown: Collection[str]) -> tuple[str, ...]:
     return tuple(effect for effect in effects if not any(effect in some for some in shown))
 
 
-def together(known: Effects, found: Effects) -> dict[str, dict[str, float]]:
+def together(stated: Effects, added: Effects) -> dict[str, dict[str, float]]:
     """Return the aircraft file's effects combined with the newly found effects.
 
     The first parameter of a found effect adds to the file's value. Other parameters, such as the damping of a
     servo, replace the file's value.
     """
-    both = {effect: dict(values) for effect, values in known.items()}
-    for effect, values in found.items():
+    both = {effect: dict(values) for effect, values in stated.items()}
+    for effect, values in added.items():
         before = {} if EFFECTS[effect].of_one_flight else both.get(effect, {})
         both[effect] = before | dict(values)
         for size in [name for name in values if name not in PROPELLER.names][:1]:
@@ -127,19 +127,19 @@ def together(known: Effects, found: Effects) -> dict[str, dict[str, float]]:
     return both
 
 
-def _beyond(variant: Variant, known: float) -> Variant:
+def _beyond(variant: Variant, stated: float) -> Variant:
     """Return the candidate counted from the file's value; the range includes the removal of that value."""
     (lowest, highest), starts = variant.bounds[0], variant.starts
-    if known > 0.0 and lowest >= 0.0:
-        lowest, starts = -known, (*starts, (-0.5 * known,))
-    elif known < 0.0 and highest <= 0.0:
-        highest, starts = -known, (*starts, (-0.5 * known,))
+    if stated > 0.0 and lowest >= 0.0:
+        lowest, starts = -stated, (*starts, (-0.5 * stated,))
+    elif stated < 0.0 and highest <= 0.0:
+        highest, starts = -stated, (*starts, (-0.5 * stated,))
     beyond = replace(variant, starts=starts, bounds=((lowest, highest),))
     if not variant.sets:
         return beyond
 
     def apply(p: FloatArray, values: Values, flights: PreparedManeuvers) -> None:
-        variant.apply(p, [known + values[0]], flights)
+        variant.apply(p, [stated + values[0]], flights)
 
     return replace(beyond, apply_with=apply)
 

@@ -92,13 +92,13 @@ def foresee(
     # Signed sizes at which the responses of the effects are first evaluated.
     sizes = [float(np.copysign(abs(v.starts[0][0]) or v.steps[0], _reach(v))) for v in wanted]
     seen = _responses(problem, fitted, list(zip(wanted, sizes, strict=True)))
-    found = [
+    listed = [
         _signature_of(problem, fitted, signatures, variant, size, signatures.of(response), rounds)
         for variant, size, response in zip(wanted, sizes, seen, strict=True)
     ]
-    found += others
+    listed += others
     shares = _shares(problem, fitted)
-    return [_foreseen(signature, found, signatures, shares) for signature in found]
+    return [_foreseen(signature, listed, signatures, shares) for signature in listed]
 
 
 def unseen_effects(

@@ -105,8 +105,8 @@ def foresee_flights(
         Time unit of the input in s; a gust lasts two time units.
     """
     variants = variants_for(flights)
-    known = with_known(base_entries(aircraft), aircraft.effects, flights, variants)
-    problem = EffectProblem(flights, known, prior_derivatives=derivatives)
+    entries = with_known(base_entries(aircraft), aircraft.effects, flights, variants)
+    problem = EffectProblem(flights, entries, prior_derivatives=derivatives)
     own = np.zeros((len(flights), len(NUISANCES)))
     own[:, NUISANCES.index("Z_trim")] = [f.level_lift for f in flights.flights]
     point = with_telemetry(everywhere(SearchPoint(derivatives, own), flights), flights)
@@ -118,15 +118,15 @@ def foresee_flights(
     signatures = Signatures(problem, fitted, noise)
     speed_signatures = [speed_signature(problem, fitted, signatures)] if flights.speed_measured else []
     wanted = beyond_known(aircraft.effects, variants)
-    found = [
+    foreseen = [
         *foresee(problem, fitted, wanted, noise, speed_signatures),
         *foresee_air(problem, fitted, signatures, unit_s),
         foresee_offset(problem, noise),
     ]
     sought = {v.effect for v in wanted}
     in_file = {v.effect: v.names[0] for v in variants if v.effect not in sought}
-    found += [Foreseen(effect, name, float("inf"), (), _IN_FILE) for effect, name in in_file.items()]
-    by_effect = {f.effect: f for f in found}
+    foreseen += [Foreseen(effect, name, float("inf"), (), _IN_FILE) for effect, name in in_file.items()]
+    by_effect = {f.effect: f for f in foreseen}
     return [by_effect.get(effect) or impossible(effect, flights) for effect in EFFECTS]
 
 

@@ -85,8 +85,8 @@ class Signatures:
 
 def _latency_at(fitted: EffectFit) -> int | None:
     """Return the index of the latency among the shared parameters; None for a model without latency."""
-    found = _latency_in(fitted)
-    return fitted.point.place(fitted.point.effects.index(found[0])).start if found else None
+    latency = _latency_in(fitted)
+    return fitted.point.place(fitted.point.effects.index(latency[0])).start if latency else None
 
 
 def _latency_in(fitted: EffectFit) -> list[Variant]:

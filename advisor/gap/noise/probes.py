@@ -89,8 +89,8 @@ def probe_blocks(problem: EffectProblem, fitted: EffectFit, noise: FloatArray) -
             value, vector = np.linalg.eigh((gram + gram.T) / 2.0)
             spectra[block].append(np.maximum(value, 0.0))
             powers[block].append((vector.T @ (colour.T @ (B.T @ unabsorbed)) / unit) ** 2)
-    found = (at_its_size(b, np.hstack(spectra[b]), np.hstack(powers[b]), total) for b in there)
-    return sorted(found, key=lambda p: -p.gain)
+    probes = (at_its_size(b, np.hstack(spectra[b]), np.hstack(powers[b]), total) for b in there)
+    return sorted(probes, key=lambda p: -p.gain)
 
 
 def at_its_size(block: str, value: FloatArray, power: FloatArray, total: float) -> Probe:
@@ -168,9 +168,9 @@ def disturbance_courses(
         free = len(colour)
         for k, size in enumerate(sizes):
             chol = factor(A, np.concatenate([prior, np.full(free, 1.0 / size**2)]))
-            found = solved(chol, A.T @ (fitted.residuals[i] * w))
-            courses[k].append(np.asarray(colour @ found[-free:]))
-            residuals[k].append(np.asarray(fitted.residuals[i] - both @ found))
+            solution = solved(chol, A.T @ (fitted.residuals[i] * w))
+            courses[k].append(np.asarray(colour @ solution[-free:]))
+            residuals[k].append(np.asarray(fitted.residuals[i] - both @ solution))
     return [DisturbanceCourse(tuple(u), tuple(y)) for u, y in zip(courses, residuals, strict=True)]
 
 

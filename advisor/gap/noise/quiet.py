@@ -68,9 +68,9 @@ def noise_in_quiet(problem: EffectProblem, fitted: EffectFit) -> Noise | None:
     rows = quiet_rows(problem, fitted)
     if not rows:
         return None
-    found = find_turbulence(rows, instrument_noise(problem))
-    gain = 0.5 * (cost_of(rows, Noise.still(spread_of(rows))) - cost_of(rows, found.noise))
-    return with_floor(problem, found.noise) if gain > LEAST_GAIN else None
+    turbulence = find_turbulence(rows, instrument_noise(problem))
+    gain = 0.5 * (cost_of(rows, Noise.still(spread_of(rows))) - cost_of(rows, turbulence.noise))
+    return with_floor(problem, turbulence.noise) if gain > LEAST_GAIN else None
 
 
 def quiet_rows(problem: EffectProblem, fitted: EffectFit) -> list[Rows]:

@@ -79,8 +79,8 @@ def stamp_jitter(problem: EffectProblem, fitted: EffectFit, rates: list[FloatArr
 
     The channel with the largest error relative to its noise decides.
     """
-    found = [_jitter_in(problem, fitted, rates, c) for c in _LEAST if c in problem.channels]
-    exceeded, jitter_s = max(found)
+    by_channel = [_jitter_in(problem, fitted, rates, c) for c in _LEAST if c in problem.channels]
+    exceeded, jitter_s = max(by_channel)
     return jitter_s if exceeded > 1.0 else 0.0
 
 

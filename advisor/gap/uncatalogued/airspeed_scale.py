@@ -43,9 +43,9 @@ class AirspeedScale:
         )
 
 
-def true_over_read(found: AirspeedScale | None, weight: WeightReading | None) -> float:
+def true_over_read(apart: AirspeedScale | None, weight: WeightReading | None) -> float:
     """Return the ratio of true to read air speed if the read one may be indicated; otherwise 1."""
-    return 1.0 + found.scale if found is not None and found.is_indicated(weight) else 1.0
+    return 1.0 + apart.scale if apart is not None and apart.is_indicated(weight) else 1.0
 
 
 def airspeed_excess(fitted: EffectFit) -> float:
@@ -63,6 +63,6 @@ def airspeed_scale_of(problem: EffectProblem, fitted: EffectFit) -> AirspeedScal
     if not scale:
         return None
     at = point.place(point.effects.index(AIRSPEED)).start
-    known = covariance_of(problem, fitted, colour_of(problem, fitted))
-    std = float(np.sqrt(known[at, at]))
+    cov = covariance_of(problem, fitted, colour_of(problem, fitted))
+    std = float(np.sqrt(cov[at, at]))
     return AirspeedScale(scale, std) if abs(scale) > max(NORMAL_95 * STATIC_PORT, SIGMAS * std) else None

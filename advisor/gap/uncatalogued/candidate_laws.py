@@ -235,8 +235,8 @@ def _weaker(flights: PreparedManeuvers) -> list[Variant]:
     def lose(p: FloatArray, values: Values, share: FloatArray) -> None:
         p[:, columns] *= (1.0 + values[0] * share)[:, None]
 
-    one = Variant(_WEAKER, "input", ("step",), ((0.0,),), (0.005,), ((-0.9, 2.0),), 0.02)
-    return steps_in(flights, one, lose)
+    variant = Variant(_WEAKER, "input", ("step",), ((0.0,),), (0.005,), ((-0.9, 2.0),), 0.02)
+    return steps_in(flights, variant, lose)
 
 
 def laws_for(flights: PreparedManeuvers) -> list[Variant]:

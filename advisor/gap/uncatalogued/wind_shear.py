@@ -96,8 +96,8 @@ def wind_shear(maneuvers: Sequence[Maneuver], true_over_read: float = 1.0) -> Sh
     true_over_read
         Ratio of the true air speed to the read air speed.
     """
-    found = _shear_of(_paths_of(maneuvers))
-    if found is None:
+    shear = _shear_of(_paths_of(maneuvers))
+    if shear is None:
         return None
     # A late instrument, or an indicated air speed, imitates a wind gradient as well.
     unexplained_power = [
@@ -142,8 +142,8 @@ def _gradient(paths: Sequence[_Path], low: float = -np.inf, high: float = np.inf
 def _paths_of(
     maneuvers: Sequence[Maneuver], true_over_read: float = 1.0, late_s: float = 0.0, skipped_s: float = 0.0
 ) -> list[_Path]:
-    found = (_path_of(m, true_over_read, late_s, skipped_s) for m in maneuvers)
-    return [p for p in found if p is not None]
+    paths = (_path_of(m, true_over_read, late_s, skipped_s) for m in maneuvers)
+    return [p for p in paths if p is not None]
 
 
 def _unexplained(paths: Sequence[_Path]) -> float:
@@ -156,27 +156,27 @@ def _path_of(
     maneuver: Maneuver, true_over_read: float = 1.0, late_s: float = 0.0, skipped_s: float = 0.0
 ) -> _Path | None:
     """Return path and air speed of a manoeuvre with a late sensor; None without channels or samples."""
-    found = maneuver.channels
-    if not all(name in found and len(found[name]) > _LEAST_SAMPLES for name in _NEEDED):
+    channels = maneuver.channels
+    if not all(name in channels and len(channels[name]) > _LEAST_SAMPLES for name in _NEEDED):
         return None
-    t = found["a_z"].t
+    t = channels["a_z"].t
     a_x, theta, alpha, speed = (
-        np.interp(t, found[c].t, found[c].y) for c in ("a_x", "theta", "alpha", "airspeed")
+        np.interp(t, channels[c].t, channels[c].y) for c in ("a_x", "theta", "alpha", "airspeed")
     )
-    bank = channel_at("bank", t, found)
-    rate = speed_rate(a_x, found["a_z"].y, theta, alpha, bank) / true_over_read
+    bank = channel_at("bank", t, channels)
+    rate = speed_rate(a_x, channels["a_z"].y, theta, alpha, bank) / true_over_read
     up, size = gravity_in_plane(theta, bank)
     climbed = integrated(t, speed * size / GRAVITY_M_S2 * np.sin(up - alpha))
-    stamps = found["airspeed"].t
+    stamps = channels["airspeed"].t
     inside = (stamps >= t[0] + max(late_s, skipped_s)) & (stamps <= t[-1])
     if np.count_nonzero(inside) < _LEAST_SAMPLES:
         return None
-    stamps, measured = stamps[inside], found["airspeed"].y[inside]
+    stamps, measured = stamps[inside], channels["airspeed"].y[inside]
     # Barometers are coarse and late: they give the height of a manoeuvre, not its climb.
-    height, begun = found.get("height"), np.nan
+    height, begun = channels.get("height"), np.nan
     if height is not None and len(height):
         begun = float(np.mean(height.y - np.interp(height.t, t, climbed)))
-    known, climbed = (np.interp(stamps - late_s, t, y) for y in (integrated(t, rate), climbed))
+    gained, climbed = (np.interp(stamps - late_s, t, y) for y in (integrated(t, rate), climbed))
     parabola = np.linalg.qr(np.vander((stamps - stamps[0]) / (stamps[-1] - stamps[0]), 3))[0]
-    path = _Path(climbed + begun, climbed, measured - known, parabola)
+    path = _Path(climbed + begun, climbed, measured - gained, parabola)
     return replace(path, climbed=path.freed(climbed), speed=path.freed(path.speed))

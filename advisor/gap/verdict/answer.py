@@ -59,7 +59,7 @@ from advisor.words.certainty import as_sure
 
 
 def answer_of(
-    found: Inference,
+    inference: Inference,
     aircraft: Aircraft,
     kinematics: KinematicCheck,
     holdout: int | None,
@@ -76,52 +76,52 @@ def answer_of(
     seen
         Flight to which the answer's model is refitted if that is likelier; None for no other flight.
     """
-    problem, floor = found.problem, found.floor
-    plain = found.chosen[0]
+    problem, floor = inference.problem, inference.floor
+    plain = inference.chosen[0]
     file_model = file_model_of(problem, plain.fitted)
     given = file_model or plain.held_out
     gaps = (whole_gap(held.mean_square, floor) for held in (given, plain.held_out))
-    posterior = capped(found.posteriors[0], *gaps)
+    posterior = capped(inference.posteriors[0], *gaps)
     answer = posterior.answer
-    named = _named(found, answer)[:most]
+    named = _named(inference, answer)[:most]
     if seen is not None:
-        *before, own = found.chosen[: len(named) + 1]
-        found = replace(found, chosen=(*before, own.seen_in(seen)))
-        named = found.chosen[1:]
-    told = posterior.explanation_of(answer)
-    law = told if answer.kind == "unknown" else None
+        *before, own = inference.chosen[: len(named) + 1]
+        inference = replace(inference, chosen=(*before, own.seen_in(seen)))
+        named = inference.chosen[1:]
+    explanation = posterior.explanation_of(answer)
+    law = explanation if answer.kind == "unknown" else None
     last = named[-1].fitted if named else plain.fitted
     e = Findings(
-        problem, _models(found, named), _unexplained(posterior, answer, law),
-        found.sought_air.found if answer.kind == "air" else None,
+        problem, _models(inference, named), _unexplained(posterior, answer, law),
+        inference.sought_air.found if answer.kind == "air" else None,
         floor, file_model, at_constant_speed(problem, last), airspeed_scale_of(problem, last),
-        circumstances, told.problem if told.taken_out and answer.kind == "effect" else None,
+        circumstances, explanation.problem if explanation.taken_out and answer.kind == "effect" else None,
     )  # fmt: skip
-    return _diagnosed(found, posterior, e, aircraft, kinematics, holdout, named), e
+    return _diagnosed(inference, posterior, e, aircraft, kinematics, holdout, named), e
 
 
-def _named(found: Inference, answer: Alternative) -> tuple[PitchModel, ...]:
+def _named(inference: Inference, answer: Alternative) -> tuple[PitchModel, ...]:
     """Return the models of the answer's effects, in the order of addition."""
-    if answer.kind != "effect" or len(found.chosen) < 2 or found.chosen[1].name != answer.name:
+    if answer.kind != "effect" or len(inference.chosen) < 2 or inference.chosen[1].name != answer.name:
         return ()
-    return found.chosen[1:]
+    return inference.chosen[1:]
 
 
 def _models(found: Inference, named: Sequence[PitchModel]) -> tuple[Model, ...]:
     """Return the plain model and the model of each named effect, each with the following effect."""
     explanations = [found.chosen[0], *named]
     models = [
-        Model(one.fitted, one.held_out, None if following is None else _added(following), one.problem.flights)
-        for one, following in zip(explanations, [*explanations[1:], None], strict=True)
+        Model(m.fitted, m.held_out, None if following is None else _added(following), m.problem.flights)
+        for m, following in zip(explanations, [*explanations[1:], None], strict=True)
     ]
     return as_measured(found.problem, models)
 
 
-def _added(one: PitchModel) -> Added:
+def _added(model: PitchModel) -> Added:
     """Return the effect of an explanation, with the manoeuvre that alone determines it, if any."""
-    assert one.variant is not None
-    place = one.fitted.point.place(one.fitted.point.index_of(one.name)).start
-    return Added(one.name, sole_informative_maneuver(one.fitted, place) if one.variant.needs else None)
+    assert model.variant is not None
+    place = model.fitted.point.place(model.fitted.point.index_of(model.name)).start
+    return Added(model.name, sole_informative_maneuver(model.fitted, place) if model.variant.needs else None)
 
 
 def _unexplained(
@@ -139,7 +139,7 @@ def _unexplained(
 
 
 def _diagnosed(
-    found: Inference,
+    inference: Inference,
     posterior: Posterior[PitchModel],
     e: Findings,
     aircraft: Aircraft,
@@ -163,39 +163,39 @@ def _diagnosed(
         last, e = without_air(last, e.air), replace(e, floor=np.minimum(e.floor, least))
     gap = gap_numbers(problem, e.floor, before, last)
     gap = replace(gap, by_air=whole_gap(with_air, e.floor) - gap.after)
-    causes = causes_of(found, posterior, e, kinematics, gap, named)
+    causes = causes_of(inference, posterior, e, kinematics, gap, named)
     wrong = posterior.of(PARAMETERS) > posterior.of(NONE)
     shrink = shrink_of(e, kept, gap, before, last, wrong) if verdict in ("effect", "parameters") else None
     fitted = e.last.fitted
-    own = (named[-1] if named else found.chosen[0]).problem
-    known = covariance_of(own, fitted, found.heat)
+    own = (named[-1] if named else inference.chosen[0]).problem
+    cov = covariance_of(own, fitted, inference.heat)
     present = [c for c in causes if c.present]
-    effects = _improvements(fitted, np.sqrt(np.maximum(np.diag(known), 0.0)), causes)
+    effects = _improvements(fitted, np.sqrt(np.maximum(np.diag(cov), 0.0)), causes)
     nuisances = effects.keys() - {c.effect for c in present} if shrink is not None else ()
-    where = _where(posterior, e, gap, known, present)
+    where = _where(posterior, e, gap, cov, present)
     outside = [c for c in present if c.block == "air" or c.effect == "alpha_bias"]
-    told = weighed(posterior)
+    basis = weighed(posterior)
     sentence = sentence_of(verdict, gap, where, causes, shrink, in_simulator(aircraft))
     unnamed = where.block if verdict == "unknown" else ""
     return Diagnosis(
         verdict=verdict,
-        sentence=as_sure(sentence, answers_of(told.evidence)),
+        sentence=as_sure(sentence, answers_of(basis.evidence)),
         gap=gap, where=where, causes=causes, shrink=shrink,
         waterfall=waterfall_of(e.models, e.floor, outside, gap.before),
         cannot_see=unseen_effects(
             problem, fitted, variants_for(problem.flights), e.floor, {c.effect for c in present}
         ),
-        kinematics=kinematics, model=model_of(problem, fitted, known),
+        kinematics=kinematics, model=model_of(problem, fitted, cov),
         reference_airspeed_m_s=problem.flights.reference_m_s if speed_is_known(problem, aircraft) else None,
         airspeed_excess=airspeed_excess(fitted), effects=effects,
         share_irreducible=irreducible(with_air, e.floor, gap),
-        decisions=(*told.decisions, *_of_the_air(found.sought_air)),
+        decisions=(*basis.decisions, *_of_the_air(inference.sought_air)),
         yardsticks=fidelity_of(problem, before, last), traces=traces_of(problem, before, last),
-        derivatives=compared_derivatives(problem, fitted, known),
-        missing_law=law_in(unnamed, lacking(problem, fitted, unnamed), found.heat),
+        derivatives=compared_derivatives(problem, fitted, cov),
+        missing_law=law_in(unnamed, lacking(problem, fitted, unnamed), inference.heat),
         notes=notes_of(e, aircraft, holdout, verdict, nuisances),
         maneuvers=tuple(f.number for f in problem.flights.flights),
-        evidence=told.evidence, failed=found.failed, why=told.why, rival=told.rival, answer=answer,
+        evidence=basis.evidence, failed=inference.failed, why=basis.why, rival=basis.rival, answer=answer,
     )  # fmt: skip
 
 
@@ -206,11 +206,11 @@ def _of_the_air(sought: SoughtAir) -> Iterator[Decision]:
 
 
 def _where(
-    posterior: Posterior[PitchModel], e: Findings, gap: Gap, known: FloatArray, present: Sequence[Cause]
+    posterior: Posterior[PitchModel], e: Findings, gap: Gap, cov: FloatArray, present: Sequence[Cause]
 ) -> Where:
     """Return the block of the answer; a block's score is the probability of all causes in it."""
     if posterior.answer == PARAMETERS:
-        return _of_the_derivatives(e.problem, e.last.fitted, known, gap)
+        return _of_the_derivatives(e.problem, e.last.fitted, cov, gap)
     if e.unexplained is not None:
         return Where(e.unexplained.block, e.unexplained.share, e.unexplained.ranking)
     scores: dict[str, float] = {}
@@ -243,13 +243,13 @@ def _improvements(
     return effects
 
 
-def _of_the_derivatives(problem: EffectProblem, fitted: EffectFit, known: FloatArray, gap: Gap) -> Where:
+def _of_the_derivatives(problem: EffectProblem, fitted: EffectFit, cov: FloatArray, gap: Gap) -> Where:
     """Return the equation whose file derivatives deviate most, relative to their uncertainty."""
     assert problem.prior_derivatives is not None
     off = fitted.point.derivatives - problem.prior_derivatives
     scores = {}
     for block, letter in (("force_equation", "Z"), ("moment_equation", "M")):
         its = [k for k, name in enumerate(DERIVATIVES) if name.startswith(letter)]
-        scores[block] = float(off[its] @ np.linalg.pinv(known[np.ix_(its, its)], hermitian=True) @ off[its])
+        scores[block] = float(off[its] @ np.linalg.pinv(cov[np.ix_(its, its)], hermitian=True) @ off[its])
     removed = 1.0 - gap.after / max(gap.before, 1e-12)
     return Where(ranked(scores)[0][0], float(np.clip(removed, 0.0, 1.0)), ranked(scores))

@@ -39,10 +39,10 @@ def causes_of(
     answer = posterior.answer
     present: list[Cause] = []
     together = 1.0
-    for stage, one in zip(inference.posteriors, named, strict=False):
-        told = posterior if stage is inference.posteriors[0] else stage
-        together *= told.of(stated_as(one.name))
-        present.append(_cause(inference, e, one, named[-1], told, together, True))
+    for stage, model in zip(inference.posteriors, named, strict=False):
+        judged = posterior if stage is inference.posteriors[0] else stage
+        together *= judged.of(stated_as(model.name))
+        present.append(_cause(inference, e, model, named[-1], judged, together, True))
     if e.without is not None:
         first, *rest = posterior.explanation_of(answer).taken_out
         present += [replace(first, probability=posterior.of(answer)), *rest]
@@ -56,10 +56,10 @@ def causes_of(
     for alternative, p in posterior.by_alternative.items():
         if not alternative.is_effect or alternative.name in taken or len(others) + len(taken) >= MOST_CAUSES:
             continue
-        one = posterior.explanation_of(alternative)
+        model = posterior.explanation_of(alternative)
         p, left = min(p, left), left - min(p, left)
-        if one.name == alternative.name:
-            others.append(_cause(inference, e, one, one, posterior, p, False))
+        if model.name == alternative.name:
+            others.append(_cause(inference, e, model, model, posterior, p, False))
         elif alternative.name == "alpha_bias":
             others.append(_offset(kinematics, posterior, gap, False))
     return (*present, *others)
@@ -155,18 +155,18 @@ _SHAPE_ERROR = 0.03
 def parameters_of(v: Variant, values: FloatArray, std: FloatArray) -> dict[str, Value]:
     """Return the parameters and their errors as the aircraft file spells them; both arrays have shape
     (names,)."""
-    found = {n: Value(float(x), float(s)) for n, x, s in zip(v.names, values, std, strict=True)}
+    sizes = {n: Value(float(x), float(s)) for n, x, s in zip(v.names, values, std, strict=True)}
     if v.inverted:
         x = max(float(values[0]), 1e-9)
-        found[v.names[0]] = Value(1.0 / x, float(std[0]) / x**2)
+        sizes[v.names[0]] = Value(1.0 / x, float(std[0]) / x**2)
     if v.in_file:
-        found = {
-            key: Value(found[name].value * (1.0 / factor), found[name].std * (1.0 / factor))
+        sizes = {
+            key: Value(sizes[name].value * (1.0 / factor), sizes[name].std * (1.0 / factor))
             for key, (name, factor) in v.in_file.items()
         }
     for name, value in v.fixed.items():
-        found[name] = Value(value, 0.0)
-    return found
+        sizes[name] = Value(value, 0.0)
+    return sizes
 
 
 def with_model_errors(cause: Cause, problem: EffectProblem) -> Cause:

@@ -40,13 +40,13 @@ def as_measured(problem: EffectProblem, models: Sequence[Model]) -> tuple[Model,
     No other manoeuvre predicts a manoeuvre that alone determines an effect.
     """
     sole: set[int] = set()
-    found = []
+    as_held = []
     for model in models:
         held = measured_in(problem, model.held_out, model.fitted, sole) if sole else model.held_out
-        found.append(replace(model, held_out=held))
+        as_held.append(replace(model, held_out=held))
         if model.added is not None and model.added.sole_maneuver is not None:
             sole.add(model.added.sole_maneuver)
-    return tuple(found)
+    return tuple(as_held)
 
 
 def kept_and_folds(problem: EffectProblem, holdout: int | None) -> tuple[list[int], list[list[int]]]:

@@ -106,10 +106,10 @@ def waterfall_of(
     return tuple(steps)
 
 
-def model_of(problem: EffectProblem, fitted: EffectFit, known: FloatArray) -> dict[str, Value]:
+def model_of(problem: EffectProblem, fitted: EffectFit, cov: FloatArray) -> dict[str, Value]:
     """Return the eight parameters about zero angles, from the parameters about each manoeuvre's trim.
 
-    ``known``, shape (k, k), is the covariance of the shared parameters. An error of the derivatives moves the
+    ``cov``, shape (k, k), is the covariance of the shared parameters. An error of the derivatives moves the
     terms at zero angles of all manoeuvres together, through the trim angles.
     """
     d, own = fitted.point.derivatives, fitted.point.own
@@ -123,29 +123,29 @@ def model_of(problem: EffectProblem, fitted: EffectFit, known: FloatArray) -> di
     for name, pair in slopes.items():
         each = terms[name] - trims @ d[list(pair)]
         mean_trim = np.mean(trims, axis=0)
-        together = mean_trim @ known[np.ix_(pair, pair)] @ mean_trim
+        together = mean_trim @ cov[np.ix_(pair, pair)] @ mean_trim
         several = each[began] if np.count_nonzero(began) > 1 else each
         scatter = np.var(several, ddof=min(1, len(several) - 1)) / np.count_nonzero(began)
         values[name] = Value(float(np.mean(each[began])), float(np.sqrt(scatter + max(together, 0.0))))
     for k, name in enumerate(DERIVATIVES):
-        values[name] = Value(float(d[k]), float(np.sqrt(max(known[k, k], 0.0))))
+        values[name] = Value(float(d[k]), float(np.sqrt(max(cov[k, k], 0.0))))
     return {name: values[name] for name in PARAMETERS}
 
 
 def compared_derivatives(
-    problem: EffectProblem, fitted: EffectFit, known: FloatArray
+    problem: EffectProblem, fitted: EffectFit, cov: FloatArray
 ) -> tuple[ComparedDerivative, ...]:
     """Return the simulator's and the flight's derivatives, with the most significant difference first.
 
-    ``known``, shape (k, k), is the covariance of the shared parameters. Without a simulator no derivative is
+    ``cov``, shape (k, k), is the covariance of the shared parameters. Without a simulator no derivative is
     compared.
     """
     if problem.prior_derivatives is None:
         return ()
-    std = np.sqrt(np.maximum(np.diag(known), 0.0))
+    std = np.sqrt(np.maximum(np.diag(cov), 0.0))
     pairs = [
-        ComparedDerivative(name, float(given), Value(float(found), float(std[k])))
-        for k, (name, given, found) in enumerate(
+        ComparedDerivative(name, float(given), Value(float(flown), float(std[k])))
+        for k, (name, given, flown) in enumerate(
             zip(DERIVATIVES, problem.prior_derivatives, fitted.point.derivatives, strict=False)
         )
     ]
@@ -166,7 +166,7 @@ def fidelity_of(
 ) -> dict[str, tuple[Yardsticks, Yardsticks]]:
     """Return the published fidelity measures of every channel, for the given simulator and the final
     model."""
-    found = {}
+    measures = {}
     for c, name in enumerate(problem.channels):
         measured = np.concatenate([f.outputs[name].y for f in problem.flights.flights])
         pair = []
@@ -175,8 +175,8 @@ def fidelity_of(
                 x[problem.rows(f)[c]] for f, x in zip(problem.flights.flights, held.residuals, strict=True)
             ])  # fmt: skip
             pair.append(yardsticks(name, measured, measured - residual))
-        found[name] = (pair[0], pair[1])
-    return found
+        measures[name] = (pair[0], pair[1])
+    return measures
 
 
 def traces_of(problem: EffectProblem, before: HeldOut, last: HeldOut) -> tuple[Trace, ...]:

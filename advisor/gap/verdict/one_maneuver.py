@@ -50,7 +50,7 @@ def answer_of_one(
         unexplained = _located(problem, baseline)
     e = Findings(problem, (Model(baseline, held_out),), unexplained, None, floor, file_model, None, None)
     gap = gap_numbers(problem, floor, before, held_out)
-    known = covariance_of(problem, baseline, colour_of(problem, baseline))
+    cov = covariance_of(problem, baseline, colour_of(problem, baseline))
     where = Where("force_equation", 0.0, ())
     if unexplained is not None:
         where = Where(unexplained.block, unexplained.share, unexplained.ranking)
@@ -61,12 +61,12 @@ def answer_of_one(
         else sentence_of_one_maneuver(where),
         gap=gap, where=where, causes=(), shrink=None, waterfall=(),
         cannot_see=unseen_effects(problem, baseline, variants_for(problem.flights), floor, set()),
-        kinematics=kinematics, model=model_of(problem, baseline, known),
+        kinematics=kinematics, model=model_of(problem, baseline, cov),
         reference_airspeed_m_s=problem.flights.reference_m_s if speed_is_known(problem, aircraft) else None,
         effects={}, share_irreducible=irreducible(held_out.mean_square, floor, gap),
         yardsticks=fidelity_of(problem, before, held_out),
         traces=traces_of(problem, before, held_out),
-        derivatives=compared_derivatives(problem, baseline, known),
+        derivatives=compared_derivatives(problem, baseline, cov),
         notes=notes_of(e, aircraft, None, verdict, ()),
         maneuvers=tuple(f.number for f in problem.flights.flights),
     )  # fmt: skip

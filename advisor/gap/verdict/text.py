@@ -141,7 +141,7 @@ def _listed(causes: Sequence[Cause]) -> str:
 
 def answers_of(evidence: Sequence[AlternativeEvidence]) -> Answers:
     """Return the answers as texts with their probabilities, the likeliest first."""
-    shares = together((one.alternative, one.probability) for one in evidence)
+    shares = together((e.alternative, e.probability) for e in evidence)
     return [(in_words(alternative), p) for alternative, p in shares]
 
 
