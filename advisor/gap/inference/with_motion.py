@@ -8,7 +8,6 @@ share of the squared motion. Only that share is evidence for a missing law.
 from collections.abc import Sequence
 
 import numpy as np
-from scipy.optimize import nnls
 
 from advisor.process.arrays import FloatArray
 
@@ -38,6 +37,8 @@ def moving_power(residuals: Sequence[FloatArray], motions: Sequence[FloatArray])
         Mean square; its standard error, from the scatter between manoeuvres; and manoeuvres less one. All are
         0 with fewer than three manoeuvres.
     """
+    from scipy.optimize import nnls  # not on the start path
+
     about = [motion - np.mean(motion, axis=1, keepdims=True) for motion in motions]
     left = [residual - np.mean(residual) for residual in residuals]
     n, moved = len(residuals), np.mean(np.hstack(motions), axis=1)

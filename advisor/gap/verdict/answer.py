@@ -107,14 +107,14 @@ def _named(inference: Inference, answer: Alternative) -> tuple[PitchModel, ...]:
     return inference.chosen[1:]
 
 
-def _models(found: Inference, named: Sequence[PitchModel]) -> tuple[Model, ...]:
+def _models(inference: Inference, named: Sequence[PitchModel]) -> tuple[Model, ...]:
     """Return the plain model and the model of each named effect, each with the following effect."""
-    explanations = [found.chosen[0], *named]
+    explanations = [inference.chosen[0], *named]
     models = [
         Model(m.fitted, m.held_out, None if following is None else _added(following), m.problem.flights)
         for m, following in zip(explanations, [*explanations[1:], None], strict=True)
     ]
-    return as_measured(found.problem, models)
+    return as_measured(inference.problem, models)
 
 
 def _added(model: PitchModel) -> Added:
