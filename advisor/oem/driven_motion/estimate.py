@@ -41,6 +41,16 @@ FAR = 1.0
 estimated."""
 
 
+class Earlier(NamedTuple):
+    """Estimate of earlier records of the aircraft, at which a search begins."""
+
+    noise: Noise
+    problem: Any
+    """The records, with the earlier servos and clocks."""
+    place: tuple[FloatArray, FloatArray]
+    """Derivatives and local parameters."""
+
+
 class Driven(NamedTuple):
     """An estimate with unknown forces."""
 
@@ -62,7 +72,7 @@ def driven(
     motion: DrivenMotion,
     parameters: Sequence[Parameter],
     priors: Callable[[Any, FloatArray], Priors],
-    near: Noise | None = None,
+    near: Earlier | None = None,
 ) -> Driven | None:
     """Return the estimate with unknown forces; None if the motion is not driven, or if the search diverges.
 
@@ -75,7 +85,7 @@ def driven(
     priors
         Function that returns the priors of the derivatives for a problem and shared parameters.
     near
-        Noise of earlier records of the aircraft, from which the noise search starts.
+        Estimate of earlier records of the aircraft, at which the searches begin.
     """
     weighing = Weighing.by(start.noise.colours, start.assembly)
     coloured = weighing.volume + float(np.sum(weighing.forward(start.residual[:, None]) ** 2))
@@ -88,12 +98,15 @@ def driven(
         return None
     prior = model.prior(here)
     still = weighing.volume + System.of(here, weighing.forward(here.columns), prior).misfit
-    noise = near or first_noise(here)
+    noise = first_noise(here) if near is None else near.noise
     white, volume = here.whitened(here.columns, noise)
     gain = 0.5 * (still - volume - System.of(here, white, prior).misfit)
     if not gain > CLEARLY:
         return None
-    return _descended(model, start, here, noise, gain, searched=near is None)
+    there = None if near is None else model.at(near.problem, *near.place, here)
+    if there is not None and model.cost(there, noise) < model.cost(here, noise):
+        here = there
+    return _descended(model, start, here, noise, gain)
 
 
 def driven_without_alpha(
@@ -112,25 +125,26 @@ def driven_without_alpha(
     air = None if here is None else moving_air(here)
     if here is None or air is None or not air.is_air:
         return None
-    return _descended(model, start, here, air.noise, air.gain, searched=None)
+    return _descended(model, start, here, air.noise, air.gain, keeps_noise=True)
 
 
 def _descended(
-    model: Model, start: Solution, here: Setting, noise: Noise, gain: float, searched: bool | None
+    model: Model, start: Solution, here: Setting, noise: Noise, gain: float, keeps_noise: bool = False
 ) -> Driven | None:
     """Return the estimate from a setting; None if the search diverges.
 
-    ``searched`` states whether the noise is that of the setting; None keeps the noise.
+    After a step the residual shows the noise better, so that the noise is searched again.
     """
     step = Step.of(model, here, noise)
+    is_due = not keeps_noise
     for _ in range(ROUNDS):
-        if searched is False and step.pending < FAR:
-            noise, searched = noise_of(here, noise), True
+        if is_due and step.pending < FAR:
+            noise, is_due = noise_of(here, noise), False
             step = Step.of(model, here, noise)
         better = None if step.pending < SETTLED else step.taken(model, here, noise)
         if better is None:
             break
-        here, searched = better, searched and step.pending < FAR
+        here, is_due = better, not keeps_noise
         step = Step.of(model, here, noise)
     if not step.pending < UNSETTLED:
         return None
