@@ -44,10 +44,10 @@ def told(
     without
         Function that returns the solution without one term; None without such a solution.
     """
-    most, found = log_likelihood(with_it), []
+    found = []
     for name in (term.name for term in terms if term.name in values):
         other = without(name)
-        gained = np.nan if other is None else most - log_likelihood(other)
+        gained = np.nan if other is None else log_likelihood(with_it) - log_likelihood(other)
         found.append(TermEstimate(name, *values[name], gained))
     return tuple(found)
 

@@ -8,6 +8,7 @@ motion.)
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import lru_cache
 from typing import Literal
 
 import numpy as np
@@ -35,6 +36,8 @@ _FOLLOW_S = np.array([0.08, 0.2, 0.5, 1.2])
 CORRUPTED_BY_LAG = ("Z_delta_e", "Z_q", "Z_alpha", "M_q")
 """Parameters that a late α biases. M_alpha and M_delta_e are not biased, because the lag only mixes α with
 its own rate. The rate of α enters the moment equation as a change of M_q."""
+KEPT = 32
+"""Numerical: number of the newest checks that are kept."""
 SMALLEST_LAG_S = 0.004
 SMALLEST_SCALE = 0.01
 
@@ -87,7 +90,28 @@ def check_alpha(
         Distances of accelerometer and vane ahead of the centre of gravity, which are corrected if known. An
         unknown accelerometer arm appears as a small negative lag, and a vane arm as a lag.
     """
-    channels = maneuver.channels
+    return _checked(_Itself(maneuver), airspeed_m_s, accelerometer_arm_m, vane_arm_m)
+
+
+class _Itself:
+    """A manoeuvre that equals itself alone, as the key of its check."""
+
+    def __init__(self, maneuver: Maneuver) -> None:
+        self.maneuver = maneuver
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, _Itself) and self.maneuver is other.maneuver
+
+    def __hash__(self) -> int:
+        return id(self.maneuver)
+
+
+@lru_cache(maxsize=KEPT)
+def _checked(
+    itself: _Itself, airspeed_m_s: float | None, accelerometer_arm_m: float | None, vane_arm_m: float | None
+) -> KinematicCheck:
+    """Return the check of one manoeuvre. A joint estimate asks again for every manoeuvre before it."""
+    maneuver, channels = itself.maneuver, itself.maneuver.channels
     missing = [name for name in NEEDED if name not in channels or len(channels[name]) < 20]
     if speed_at(np.zeros(1), maneuver, airspeed_m_s) is None:
         missing.append("airspeed")

@@ -35,7 +35,8 @@ FIRST_LOOK = 8
 """Iterations of the first fit, whose residuals give the first colour of the noise. With servos and clocks
 fixed, a longer search may leave physical values. In a rudder doublet L_p of -10 1/s became -220 1/s."""
 SAME = 0.01
-"""Numerical: second moment between two optima, as a share of the bound, at which both are one hill."""
+"""Numerical: second moment between two optima, as a share of the bound, at which both are one hill.
+The search for the second one ends at a promised decrease of this size."""
 WITHOUT_FORCE = (
     "neither a lateral acceleration nor a sideslip was recorded, so only the modes are known; record a_y"
 )
@@ -166,7 +167,7 @@ def _of_both_hills(fit: Fit, nuisances: Sequence[Nuisance], prior: Priors) -> tu
     shared = fit.optimum.shared.copy()
     shared[[name.startswith("L_") for name in LATERAL.names.shared]] /= roll * lag.read(fit.problem)
     there, start = lag.write(fit.problem, 1.0 / roll), _holding(fit.problem, (shared, fit.optimum.local))
-    rival = descended(_MOTION, there, nuisances, prior, start)
+    rival = descended(_MOTION, there, nuisances, prior, start, settled=SAME)
     if isinstance(rival, NoEstimate) or refused(rival.optimum) is not None:
         return fit, None
     lower, moment = Posterior(nuisances, lag.prior.share).apart(fit, rival)

@@ -202,9 +202,9 @@ def test_a_long_record_with_little_sideslip_starts_near_the_stiffness_in_yaw():
 def test_a_search_that_goes_on_looks_for_no_other_hill_where_earlier_records_have_one(doublets, monkeypatch):
     fits = []
 
-    def counted(*told):
+    def counted(*told, **ends):
         fits.append(told)
-        return descended(*told)
+        return descended(*told, **ends)
 
     lag = Nuisance("lag", "aileron", Prior(0.05, 0.03))
     whole = lagged(doublets, 0.06, 0.0)
