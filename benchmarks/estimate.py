@@ -21,6 +21,7 @@ from scipy.signal import lsim
 from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft.controls import Elevator
 from advisor.aircraft.reference import PARAMETERS
+from advisor.bundled.study.batch import solve_many
 from advisor.flight.maneuvers.events import ManeuverFlown
 from advisor.flight.maneuvers.maneuver import Maneuver, Span
 from advisor.flight.signals.record import Channel
@@ -28,7 +29,6 @@ from advisor.flight.stream.stream import FlightStream
 from advisor.mavlink.logs.tlog import read_tlog
 from advisor.model.outputs import N_PARAMETERS
 from advisor.model.response import respond
-from advisor.oem.batch import solve_many
 from advisor.oem.following import Follower
 from advisor.oem.problem import OutputErrorProblem, Record
 from advisor.oem.rows import Signal

@@ -89,9 +89,8 @@ class UpdatableSolution:
         """Return the estimate with the newest samples; None if the model must be solved again."""
         new = {name: self._new(name, maneuver) for name in self._rows}
         stamps = np.concatenate([signal.t for signal in new.values()])
-        if len(stamps) and not self._solve(maneuver, new, stamps):
-            return None
-        return self._stepped()
+        goes_on = not len(stamps) or self._solve(maneuver, new, stamps)
+        return self._stepped() if goes_on else None
 
     def _new(self, name: str, maneuver: Maneuver) -> Signal:
         """Return the new samples of an output. A repeated angle of attack is no new sample."""

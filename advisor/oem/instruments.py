@@ -44,7 +44,6 @@ PLACE_S = 0.1
 """Standard deviation of an unknown vane or accelerometer arm, over the air speed, s. Recorded vanes have 0.01
 to 0.11 s; the longest is a nose boom of 13 m at 130 m/s."""
 
-
 FLAT = Prior(0.0, np.inf)
 """Prior of an unknown coefficient."""
 
@@ -71,15 +70,11 @@ class Instrument:
     def read(self, problem: OutputErrorProblem) -> float:
         """Return the parameter's value in a problem. A delay of the command is relative to its linear motion
         between stamps."""
-        match self.name:
-            case "servo_lag_s":
-                return problem.servo.lag_s
-            case "command_delay_s":
-                return problem.servo.delay_s + _held_for(problem)
-            case name if name in problem.terms:
-                return problem.terms[name]
-            case name:
-                return float(getattr(problem, name))
+        if self.name == "servo_lag_s":
+            return problem.servo.lag_s
+        if self.name == "command_delay_s":
+            return problem.servo.delay_s + _held_for(problem)
+        return float(problem.terms[self.name] if self.name in problem.terms else getattr(problem, self.name))
 
     def write(self, problem: OutputErrorProblem, value: float) -> OutputErrorProblem:
         """Return the problem with another value of the parameter."""
@@ -154,11 +149,13 @@ COUPLING = parse_term("M:p*r")
 """Moment of rolling with yawing, (I_zz - I_xx)/I_yy·p·r, in the model of inputs at once. Every body has
 I_zz ≤ I_xx + I_yy, and an aircraft has I_xx ≤ I_zz. The factor therefore lies between 0 and 1 (Etkin & Reid,
 Dynamics of Flight, 1996, ch. 4)."""
+COUPLING_PRIOR = Prior(0.5, 12.0**-0.5)
+"""Prior of the factor of ``COUPLING``: mean and standard deviation of a number between 0 and 1."""
 
 
 def coefficient(term: str) -> Instrument:
     """Return the coefficient of a term, as one more parameter."""
-    prior = Prior(0.5, 12.0**-0.5) if term == COUPLING.name else FLAT
+    prior = COUPLING_PRIOR if term == COUPLING.name else FLAT
     return Instrument(term, 0.0, -np.inf, np.inf, lambda _: prior, prior=prior)
 
 

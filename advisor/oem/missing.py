@@ -76,6 +76,4 @@ def _spread(assembly: Assembly, y: FloatArray, output: str) -> float:
 
 def _errors(assembly: Assembly, g: FloatArray, noise: FloatArray) -> FloatArray | None:
     effect = influence(assembly, g, noise)
-    if effect is None:
-        return None
-    return np.sqrt(np.diag(cramer_rao(assembly, effect.rows, noise)))
+    return None if effect is None else np.sqrt(np.diag(cramer_rao(assembly, effect.rows, noise)))

@@ -80,7 +80,7 @@ def _from_force(problem: OutputErrorProblem) -> tuple[FloatArray, FloatArray]:
         q, force = finite(record.outputs["q"]), finite(record.outputs["a_z"])
         surface, ratio = problem.servo.signal(record.command), _ratio(record, problem, q.t)
         begin = float(q.t[0])
-        n = Signal(force.t, force.y / _speed(record, force.t))
+        n = force if record.airspeed is None else Signal(force.t, force.y / record.airspeed.at(force.t))
         columns = [
             _integral(Signal(x.t, x.y * ratio.at(x.t) ** power), begin, q.t)
             for x, power in ((n, 1), (q, 1), (surface, 2))
@@ -110,10 +110,6 @@ def _ratio(record: Record, problem: OutputErrorProblem, t: FloatArray) -> Signal
     if record.airspeed is None or problem.reference_airspeed_m_s is None:
         return Signal(t, np.ones(len(t)))
     return Signal(record.airspeed.t, record.airspeed.y / problem.reference_airspeed_m_s)
-
-
-def _speed(record: Record, t: FloatArray) -> FloatArray:
-    return np.ones(len(t)) if record.airspeed is None else record.airspeed.at(t)
 
 
 def _regressors(

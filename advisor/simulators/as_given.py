@@ -8,11 +8,10 @@ import numpy as np
 from advisor.aircraft.aircraft import Aircraft
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.gap.candidates.catalogue import variants_for
-from advisor.gap.candidates.known import with_known
+from advisor.gap.candidates.known import base_entries, with_known
 from advisor.gap.effects import EFFECTS
 from advisor.gap.records.flights import PreparedManeuvers
 from advisor.gap.result import Trace, TrimDifference
-from advisor.gap.search.baseline import base_entries
 from advisor.gap.simulator.layout import DERIVATIVES, INDEX, OUTPUTS
 from advisor.simulators.air import refuse_unknown_air, standard_heights, winds
 from advisor.simulators.around import COMMAND

@@ -15,14 +15,14 @@ from advisor.aircraft.aircraft import Aircraft
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.flight.signals.record import Channel
 from advisor.gap.candidates.catalogue import variants_for
-from advisor.gap.candidates.known import Effects
+from advisor.gap.candidates.known import Effects, base_entries
 from advisor.gap.diagnose import examine
 from advisor.gap.fitting.fit import fit
 from advisor.gap.inference.evidence import FlightProblem
 from advisor.gap.inference.pitch import PitchFlight, PitchModel
 from advisor.gap.inference.posterior import stated_as
 from advisor.gap.records.prepare import prepare
-from advisor.gap.search.baseline import base_entries, fit_baseline
+from advisor.gap.search.baseline import fit_baseline
 from advisor.gap.search.screen import Screen
 from advisor.gap.simulator.layout import DERIVATIVES
 from advisor.gap.verdict.causes import parameters_of

@@ -8,14 +8,13 @@ import numpy as np
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.gap.candidates.catalogue import variants_for
-from advisor.gap.candidates.known import Effects, with_known
+from advisor.gap.candidates.known import Effects, base_entries, with_known
 from advisor.gap.effects.actuator_lag import LAG
 from advisor.gap.effects.transport_delay import DELAY
 from advisor.gap.fitting.fit import EffectFit, fit
 from advisor.gap.fitting.problem import EffectProblem, SearchPoint
 from advisor.gap.fitting.regression import regressions
 from advisor.gap.records.flights import PreparedManeuver, PreparedManeuvers
-from advisor.gap.search.baseline import base_entries
 from advisor.gap.simulator.layout import (
     DERIVATIVES,
     HEIGHT,

@@ -31,7 +31,7 @@ for place, name in enumerate(sorted(ENTRIES)):
     p[0, INDEX[name]] = 0.01 + 0.001 * place
 t, u, n = np.array([0.0, 0.02, 0.04]), np.array([0.0, 0.1, -0.1]), 20
 moved = surfaces(LAYOUT, 0.005, n, t, u, False, 0.0, p)
-slow = np.full((8, n), 20.0)
+slow = np.full((10, n), 20.0)
 flown = simulate(LAYOUT, 0.005, *moved, LANES, slow, np.zeros((4, 0)), np.zeros(1), np.ones(4), p)
 print(ENTRIES[0], flown[0, :, :, 0].tolist())
 """

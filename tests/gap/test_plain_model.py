@@ -11,6 +11,7 @@ from advisor.flight.instruments.lateness import lateness_std
 from advisor.flight.signals.derived_alpha import DERIVED_ALPHA
 from advisor.flight.signals.instrument_finding import InstrumentFinding
 from advisor.gap.candidates.catalogue import variants_for
+from advisor.gap.candidates.known import base_entries
 from advisor.gap.candidates.nuisances import latency
 from advisor.gap.fitting.holdout import hold_out
 from advisor.gap.fitting.prior import ERROR_IF_RIGHT, ERROR_IF_WRONG
@@ -22,7 +23,7 @@ from advisor.gap.noise.shown_gust import largest_gust
 from advisor.gap.records.prepare import as_stamped, prepare
 from advisor.gap.records.unmeasured_alpha import alpha_by_motion
 from advisor.gap.records.usable import outputs_of
-from advisor.gap.search.baseline import base_entries, fit_baseline, fit_unfiltered
+from advisor.gap.search.baseline import fit_baseline, fit_unfiltered
 from advisor.gap.simulator.layout import DERIVATIVES as DERIVATIVES_BY_NAME
 from advisor.gap.simulator.layout import SPEED
 from advisor.oem.instruments import COMMAND_DELAY

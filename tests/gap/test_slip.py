@@ -50,8 +50,8 @@ def test_the_turn_moves_the_angle_of_attack_and_its_force_follows() -> None:
     problem, fitted = fit_unfiltered(flights, Aircraft())
     flight = flights.flights[0]
     p = problem.driving(fitted.point)[0]
-    still = replace(flight, slow=np.vstack([*flight.slow[:SLIP], np.zeros(flight.n)]))
-    step = replace(flight, slow=np.vstack([*flight.slow[:SLIP], np.full(flight.n, 0.02)]))
+    others = np.arange(len(flight.slow))[:, None] != SLIP
+    still, step = (replace(flight, slow=np.where(others, flight.slow, turn)) for turn in (0.0, 0.02))
     without, turned = (problem.fly_and_read(one, p[None])[:, 0] for one in (still, step))
     rows = {name: problem.flights.channels.index(name) for name in ("alpha", "a_z")}
     sizes = [len(flight.outputs[name].t) for name in problem.flights.channels]

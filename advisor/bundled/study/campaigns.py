@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from advisor.aircraft.aircraft import CampaignPlan, Rule
+from advisor.bundled.study.batch import Batch, solve_many
 from advisor.bundled.study.flying import (
     NoiselessManeuver,
     NoiseReading,
@@ -20,7 +21,6 @@ from advisor.decision.history import CandidateManeuver
 from advisor.decision.information import knowledge
 from advisor.decision.paper_rules import MANEUVER_RULES, scatter_percent, window
 from advisor.flight.maneuvers.maneuver import Maneuver
-from advisor.oem.batch import Batch, solve_many
 from advisor.oem.estimate import ChannelFit, Estimate
 from advisor.oem.rows import Signal
 from advisor.oem.surface import Servo

@@ -16,6 +16,8 @@ from advisor.gap.effects import EFFECTS
 from advisor.gap.kit.curve import as_in_file
 from advisor.gap.kit.variant import Values, Variant
 from advisor.gap.records.flights import PreparedManeuvers
+from advisor.gap.simulator.layout import ENTRIES, INDEX
+from advisor.oem.instruments import COUPLING_PRIOR
 from advisor.process.arrays import FloatArray
 
 _IN_FILE = 1e-5
@@ -24,6 +26,17 @@ Effects = Mapping[str, Mapping[str, float]]
 """Parameters of each effect, by the effect's name, in the units of the aircraft file."""
 AIR = frozenset(name for name, effect in EFFECTS.items() if effect.block == "air")
 """Effects of moving air, which no fit can carry from one flight to another."""
+
+
+def base_entries(aircraft: Aircraft) -> FloatArray:
+    """Return the simulator's inputs that the file states for servo and instruments, shape (entries,)."""
+    base = np.zeros(len(ENTRIES))
+    base[INDEX["lag_s"]] = aircraft.elevator.lag_s or 0.0
+    base[INDEX["delay_s"]] = aircraft.elevator.delay_s or 0.0
+    base[INDEX["vane_arm_m"]] = aircraft.alpha.vane_arm_m or 0.0
+    base[INDEX["imu_arm_m"]] = aircraft.accelerometer.arm_m or 0.0
+    base[INDEX["inertia_share"]] = COUPLING_PRIOR.mean
+    return base
 
 
 def with_known(

@@ -1,10 +1,13 @@
 """Nuisance parameters: natural delays, filters and scales that are part of every model and never named."""
 
+import numpy as np
+
 from advisor.flight.instruments.evidence import COMPUTED_WIDTH
 from advisor.flight.instruments.lateness import lateness_std
 from advisor.gap.kit.variant import Values, Variant
 from advisor.gap.records.flights import PreparedManeuvers
-from advisor.gap.simulator.layout import INDEX, OUTPUTS, SKEWS
+from advisor.gap.simulator.layout import INDEX, OUTPUTS, ROLL_YAW, SKEWS, SQUARES
+from advisor.oem.instruments import COUPLING_PRIOR
 from advisor.process.arrays import FloatArray
 
 _FILTERS_S = 0.01
@@ -32,6 +35,15 @@ PROPELLER = Variant(
 with V². An elevator in the propeller's wake meets a higher dynamic pressure, by thrust over disk area
 (Glauert). Thrust is drag, which grows with V², plus the acceleration along the path. In a light single-engine
 aircraft the wake adds about a fifth of the elevator's power."""
+
+INERTIA = Variant(
+    "inertia", "moment_equation", ("inertia_share", "inertia_product"), ((0.0, 0.0),), (0.02, 0.02),
+    ((-0.5, 0.5), (-0.15, 0.15)), 0.0, entries=("inertia_share", "inertia_product"),
+    prior_std=(COUPLING_PRIOR.std, 0.05), is_nuisance=True,
+)  # fmt: skip
+"""Nuisance parameters of every model whose manoeuvres roll (``rolls``): the moments of p·r and of r² - p².
+The factor of p·r is (I_zz - I_xx)/I_yy, relative to its prior mean. The other factor is I_xz/I_yy:
+.05 where the principal axes tilt by 5 degrees (Etkin & Reid, Dynamics of Flight, 1996, ch. 4)."""
 
 STATIC_PORT = 0.02
 """Prior: relative standard deviation of the air speed's error by the static port, which reads a pressure that
@@ -72,6 +84,21 @@ IMU = Variant(
 of gyro and accelerometer cause. Neither a vane nor the attitude passes the filters of gyro and
 accelerometer. With filters of 15 to 30 Hz the first answer was wrong in 15 of 27 flights without this
 parameter, and in 3 with it."""
+
+
+def rolls(flights: PreparedManeuvers) -> bool:
+    """Return whether a standard error of the moments of inertia changes the likelihood of the pitch rate.
+
+    The change of the pitch rate, without a part linear in time, is compared with the gyro's white noise.
+    """
+    power = np.zeros(2)
+    for flight in flights.flights:
+        turned = np.cumsum(flight.slow[[ROLL_YAW, SQUARES]], axis=1).T * flight.h
+        course = np.vander(np.arange(len(turned)), 2)
+        turned -= course @ np.linalg.lstsq(course, turned, rcond=None)[0]
+        power += len(flight.outputs["q"].t) * np.mean(turned**2, axis=0)
+    white = float(flights.white[flights.channels.index("q")])
+    return bool(np.any(power * np.square(INERTIA.prior_std) > white**2))
 
 
 def latency(flights: PreparedManeuvers) -> Variant:

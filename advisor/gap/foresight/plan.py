@@ -9,7 +9,7 @@ from advisor.aircraft.reference import PARAMETERS
 from advisor.flight.maneuvers.maneuver import Maneuver, Span
 from advisor.flight.signals.record import Channel
 from advisor.gap.candidates.catalogue import variants_for
-from advisor.gap.candidates.known import beyond_known, with_known
+from advisor.gap.candidates.known import base_entries, beyond_known, with_known
 from advisor.gap.effects import EFFECTS
 from advisor.gap.fitting.fit import EffectFit
 from advisor.gap.fitting.linear import linearise
@@ -21,7 +21,7 @@ from advisor.gap.foresight.signatures import Signatures
 from advisor.gap.records.flights import PreparedManeuvers
 from advisor.gap.records.prepare import prepare
 from advisor.gap.records.usable import LEAST_SAMPLES
-from advisor.gap.search.baseline import base_entries, everywhere, prior_derivatives, with_telemetry
+from advisor.gap.search.baseline import everywhere, prior_derivatives, with_telemetry
 from advisor.gap.simulator.layout import NUISANCES, OUTPUTS, natural_frequency
 from advisor.process.arrays import FloatArray
 from advisor.words.problems import ConfigurationError

@@ -176,6 +176,8 @@ def _ready(m: Maneuver, reference: float, level: float | None, true_over_read: f
     slow = np.vstack(SLOW._replace(speed=speed, a_x=a_x, bank=bank, height=on_grid("height", 1e3),
                                    thrust=along_the_path(grid, m, start) / GRAVITY_M_S2,
                                    turn=yaw_rate * np.sin(bank),
+                                   roll_yaw=on_grid("p", 0.0) * on_grid("r", 0.0),
+                                   squares=on_grid("r", 0.0) ** 2 - on_grid("p", 0.0) ** 2,
                                    slip=np.zeros(n) if slipping is None else slipping.at(grid + start),
                                    throttle=throttle - float(np.mean(throttle[:20]))))  # fmt: skip
     outputs = outputs_of(m)

@@ -5,9 +5,9 @@ from dataclasses import replace
 import numpy as np
 
 from advisor.aircraft.aircraft import Aircraft
+from advisor.gap.candidates import nuisances
 from advisor.gap.candidates.catalogue import variants_for
-from advisor.gap.candidates.known import changes_in, lasting, with_known
-from advisor.gap.candidates.nuisances import AIRSPEED, GYRO, IMU, LOOP, OWN_ALPHA, PROPELLER, filters, latency
+from advisor.gap.candidates.known import base_entries, changes_in, lasting, with_known
 from advisor.gap.effects.actuator_lag import LAG
 from advisor.gap.effects.transport_delay import DELAY
 from advisor.gap.fitting.fit import EffectFit, evidence_of, fit, rms_of
@@ -20,7 +20,7 @@ from advisor.gap.noise.stamps import rates_of, stamp_jitter
 from advisor.gap.records.flights import PreparedManeuvers
 from advisor.gap.records.floor import stated_floor
 from advisor.gap.search.screen import Screen
-from advisor.gap.simulator.layout import DERIVATIVES, ENTRIES, INDEX, NUISANCES
+from advisor.gap.simulator.layout import DERIVATIVES, NUISANCES
 from advisor.process.arrays import FloatArray
 
 _SLIGHT_S = 0.005
@@ -72,21 +72,23 @@ def everywhere(point: SearchPoint, flights: PreparedManeuvers, latency_s: float 
     The latency is one loop of the autopilot; ``with_telemetry`` widens it after the command's motion is
     known.
     """
-    late = point.with_effect(LOOP, (latency_s,)).with_effect(GYRO, (0.0,))
+    late = point.with_effect(nuisances.LOOP, (latency_s,)).with_effect(nuisances.GYRO, (0.0,))
     if flights.alpha_is_derived:
-        own = filters(flights)
+        own = nuisances.filters(flights)
         late = late.with_effect(own, (0.0,) * len(own.names))
-        late = late.with_effect(OWN_ALPHA, (0.0, 0.0))
+        late = late.with_effect(nuisances.OWN_ALPHA, (0.0, 0.0))
     elif {"alpha", "theta"} & set(flights.channels):
-        late = late.with_effect(IMU, (0.0,))
+        late = late.with_effect(nuisances.IMU, (0.0,))
     if "a_z" in flights.channels:
-        late = late.with_effect(AIRSPEED, (0.0,))
-    return late.with_effect(PROPELLER, (0.0, 0.0, 0.0)) if flights.speed_measured else late
+        late = late.with_effect(nuisances.AIRSPEED, (0.0,))
+    if nuisances.rolls(flights):
+        late = late.with_effect(nuisances.INERTIA, (0.0, 0.0))
+    return late.with_effect(nuisances.PROPELLER, (0.0, 0.0, 0.0)) if flights.speed_measured else late
 
 
 def with_telemetry(point: SearchPoint, flights: PreparedManeuvers) -> SearchPoint:
     """Return the point with the delay that telemetry may cause between command stamps and effect."""
-    effects = tuple(latency(flights) if e is LOOP else e for e in point.effects)
+    effects = tuple(nuisances.latency(flights) if e is nuisances.LOOP else e for e in point.effects)
     return replace(point, effects=effects)
 
 
@@ -97,24 +99,13 @@ def fit_telemetry(problem: EffectProblem, fitted: EffectFit, noise: FloatArray) 
     Edges of the command move with the delay, so the cost has local minima.
     """
     point = with_telemetry(fitted.point, problem.flights)
-    k = point.index_of(LOOP.effect)
+    k = point.index_of(nuisances.LOOP.effect)
     best = fit(problem, point, noise)
     for start in point.effects[k].bounds[0]:
         values = (*point.values[:k], np.array([start]), *point.values[k + 1 :])
         other = fit(problem, replace(point, values=values), noise, beaten_by=best.cost)
         best = min(best, other, key=_finite_cost)
     return best
-
-
-def base_entries(aircraft: Aircraft) -> FloatArray:
-    """Return the simulator inputs that the aircraft file states for servo and instruments, shape
-    (entries,)."""
-    base = np.zeros(len(ENTRIES))
-    base[INDEX["lag_s"]] = aircraft.elevator.lag_s or 0.0
-    base[INDEX["delay_s"]] = aircraft.elevator.delay_s or 0.0
-    base[INDEX["vane_arm_m"]] = aircraft.alpha.vane_arm_m or 0.0
-    base[INDEX["imu_arm_m"]] = aircraft.accelerometer.arm_m or 0.0
-    return base
 
 
 def prior_derivatives(aircraft: Aircraft) -> FloatArray | None:

@@ -27,6 +27,7 @@ EFFECT_ENTRIES = (
     # moment equation
     "M_delta2", "M_delta3", "M_alpha2", "M_alpha3", "M_alpha_dot", "M_h",
     "M_throttle", "engine_lag_s", "M_thrust", "washed_share", "blown_share",
+    "inertia_share", "inertia_product",
     # laws outside the catalogue, of the moment and of the force
     "M_q_abs", "M_q_q", "M_alpha_q", "M_alpha_delta_e", "Z_q_abs", "Z_q_q",
     # force equation
@@ -71,9 +72,10 @@ def places(names: Sequence[str]) -> Any:
 
 
 AT, READ, FILTERED = places(ENTRIES), places(OUTPUTS), places(FILTER)
-SLOW = places(("speed", "a_x", "bank", "throttle", "height", "thrust", "turn", "slip"))
-SPEED, A_X, BANK, THROTTLE, HEIGHT, THRUST, TURN, SLIP = SLOW
-"""Row numbers of the slow inputs, which have one value per time step."""
+SLOW = places(("speed", "a_x", "bank", "throttle", "height", "thrust", "turn", "slip", "roll_yaw", "squares"))
+SPEED, A_X, BANK, THROTTLE, HEIGHT, THRUST, TURN, SLIP, ROLL_YAW, SQUARES = SLOW
+"""Row numbers of the slow inputs, which have one value per time step; ``roll_yaw`` is p·r and
+``squares`` is r² - p²."""
 DISTURBED = places(("input", "force", "moment", "air"))
 DISTURB_INPUT, DISTURB_FORCE, DISTURB_MOMENT, DISTURB_AIR = DISTURBED
 """Row numbers of the disturbances, one value per time step, added to δ, α̇, q̇ and the angle of the air."""

@@ -62,9 +62,9 @@ def simulate(
     lanes
         ``LANES``, as in ``advisor.gap.simulator.step``.
     slow
-        Shape (8, n). Speed (m/s), a_x (m/s²), bank (rad), throttle relative to its start, height (m), thrust
-        minus drag over weight relative to its mean, r sin φ (rad/s), which a turn subtracts from θ̇, and the
-        rate of α by rolling in sideslip (rad/s).
+        Shape (10, n). Speed (m/s), a_x (m/s²), bank (rad), throttle relative to its start, height (m), thrust
+        minus drag over weight relative to its mean, r sin φ (rad/s), which a turn subtracts from θ̇, the rate
+        of α by rolling in sideslip (rad/s), p·r and r² - p² (rad²/s²).
     disturbance
         Shape (4, n), or (4, 0) for none: added to δ, α̇, q̇ and the angle of the air.
     doses
@@ -90,8 +90,7 @@ def simulate(
     out = np.empty((packs, n + 1, len(READ), LANES))
     x, which = np.empty((ROWS, LANES)), np.empty(LANES, dtype=np.int64)
     delta, above = np.empty(LANES), np.empty(LANES)
-    alpha_trim, theta_from, reference = trim[TRIM.alpha], trim[TRIM.theta], trim[TRIM.reference]
-    scaled = trim[TRIM.scaled] > 0.5
+    alpha_trim, reference, scaled = trim[TRIM.alpha], trim[TRIM.reference], trim[TRIM.scaled] > 0.5
     disturbed = disturbance.shape[1] == n
     level = np.cos(slow[SLOW.bank])
     d_delta, d_force, d_moment, d_air = 0.0, 0.0, 0.0, 0.0
@@ -122,6 +121,6 @@ def simulate(
                 if stalls:
                     stall(x, lanes, h, d_air)
                 rates(x, lanes, h, d_air, alpha_trim, stage == 0)
-            read_sensors(x, lanes, out[k, i], d_air, slow[SLOW.a_x, j], alpha_trim, theta_from)
+            read_sensors(x, lanes, out[k, i], d_air, slow[:, j], trim)
             advance(x, lanes, h, alpha_trim, level[j], slow[SLOW.turn, j], separates)
     return out

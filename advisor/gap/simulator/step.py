@@ -9,7 +9,7 @@ import numpy as np
 from advisor.aircraft.standard_gravity import GRAVITY_M_S2
 from advisor.gap.simulator import pack as row
 from advisor.gap.simulator.circle import cos_sin
-from advisor.gap.simulator.layout import AT, READ, SLOW
+from advisor.gap.simulator.layout import AT, READ, SLOW, TRIM
 from advisor.process.arrays import FloatArray
 from advisor.process.compiled import kernel
 
@@ -92,7 +92,7 @@ def hold_over_step(
     delta, above
         Shape (LANES,): mean deflection over the step relative to trim, and that minus the one at its start.
     slow
-        Shape (8,): the slow inputs of the step.
+        Shape (10,): the slow inputs of the step.
     level
         Cosine of the bank.
     disturbed
@@ -122,7 +122,8 @@ def hold_over_step(
             m_d * d
             + pressure * (x[AT.M_trim, m] + (x[AT.M_delta2, m] + x[AT.M_delta3, m] * d) * d * d)
             + pressure * x[AT.M_h, m] * x[row.NEAR, m] + x[AT.M_throttle, m] * x[row.ENGINE, m]
-            + x[AT.M_thrust, m] * (1.0 - vv) + x[row.DOSE, m] * d_moment
+            + x[AT.M_thrust, m] * (1.0 - vv) + x[AT.inertia_share, m] * slow[SLOW.roll_yaw]
+            + x[AT.inertia_product, m] * slow[SLOW.squares] + x[row.DOSE, m] * d_moment
         )  # fmt: skip
         # Outputs belong to the start of the step.
         ahead = above[m]
@@ -198,9 +199,10 @@ def rates(x: FloatArray, lanes: int, h: float, d_air: float, alpha_trim: float, 
 
 @_inlined
 def read_sensors(
-    x: FloatArray, lanes: int, out: FloatArray, d_air: float, a_x: float, alpha_trim: float, theta_from: float
+    x: FloatArray, lanes: int, out: FloatArray, d_air: float, slow: FloatArray, trim: FloatArray
 ) -> None:
     """Write the instrument readings at the start of a step into ``out``, shape (4, LANES)."""
+    a_x, alpha_trim, theta_from = slow[SLOW.a_x], trim[TRIM.alpha], trim[TRIM.theta]
     for m in range(lanes):
         alpha, q, air = x[row.ALPHA, m], x[row.Q, m], x[row.DOSE, m] * d_air
         x[row.AIR, m] = air
@@ -215,7 +217,7 @@ def read_sensors(
         bent = (x[AT.alpha_read2, m] + x[AT.alpha_read3, m] * turned) * turned
         out[READ.alpha, m] = alpha_trim + (1.0 + x[AT.alpha_scale, m] + bent) * turned
         a_z = (x[row.AIRSPEED, m] * x[row.NORMAL_0, m] + a_x * x[row.SIN_ALPHA, m]) / x[row.COS_ALPHA, m]
-        a_z -= x[AT.imu_arm_m, m] * x[row.QDOT_0, m]
+        a_z -= x[AT.imu_arm_m, m] * (x[row.QDOT_0, m] - slow[SLOW.roll_yaw])
         pulled = a_z + GRAVITY_M_S2
         out[READ.q, m] = ((1.0 + x[AT.q_scale, m]) * q + x[AT.q_bias, m]
                           + x[AT.mode_gain, m] * x[row.BEND, m]

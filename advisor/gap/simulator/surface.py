@@ -75,9 +75,8 @@ def above_start(mean: FloatArray) -> FloatArray:
 @kernel()
 def _lesser(one: float, other: float) -> float:
     """Return the smaller of two differences of equal sign; zero where their signs differ."""
-    if one * other <= 0.0:
-        return 0.0
-    return one if abs(one) < abs(other) else other
+    lesser = one if abs(one) < abs(other) else other
+    return lesser if one * other > 0.0 else 0.0
 
 
 @kernel()

@@ -56,7 +56,10 @@ def _of_the_hold_out(holdout: int | None, flown: int) -> Iterator[str]:
 def _of_the_speed(e: Findings, aircraft: Aircraft) -> Iterator[str]:
     """Yield notes on the source of the air speed and its errors."""
     flights = e.problem.flights
-    flown, reference = _mean_speed(flights), flights.reference_m_s
+    flown, reference = (
+        float(np.mean([x.slow[SPEED].mean() for x in flights.flights])),
+        flights.reference_m_s,
+    )
     is_stated = aircraft.reference_airspeed_m_s is not None and e.circumstances.speed_is_stated
     if not flights.speed_measured:
         yield _without_air_speed(flights, bool(aircraft.stated_airspeed_m_s))
@@ -188,7 +191,3 @@ def unusual_signs(model: Mapping[str, float]) -> tuple[str, ...]:
         f"The aircraft file's M_delta_e is {model['M_delta_e']:g}, above zero. That is right for a canard "
         "only: an elevator trailing edge down is positive and pitches the nose down.",
     )
-
-
-def _mean_speed(flights: PreparedManeuvers) -> float:
-    return float(np.mean([np.mean(flight.slow[SPEED]) for flight in flights.flights]))

@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from advisor.oem.batch import solve_many
+from advisor.bundled.study.batch import solve_many
 from advisor.oem.problem import OutputErrorProblem, Record
 from advisor.oem.rows import Signal
 from advisor.oem.solution import solve
