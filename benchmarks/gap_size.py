@@ -53,15 +53,15 @@ NAMES = frozenset(CATALOGUE) | frozenset(BLOCKS_OF_EFFECTS) | {"attitude_sensor"
 VAGUE = frozenset({"found", "known", "one", "told"})
 """Names that fit any value. A variable is named by its value instead: optimum, posterior, record, lag."""
 LIMITS = {
-    "lines of code": 7045,
+    "lines of code": 7043,
     "constants": 207,
     "constants that decide": 25,
     "names compared": 11,
     "complex functions": 0,
-    "lines of estimation": 16362,
+    "lines of estimation": 16359,
     "lines of the package": 60900,
     "files naming an axis": 109,
-    "vague names": 305,
+    "vague names": 23,
 }
 """Upper bound of each count."""
 MOST_COMPLEX = 15

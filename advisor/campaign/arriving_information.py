@@ -61,7 +61,7 @@ class ArrivingInformation:
             self._begin((begun_s, ceil(FIRST_S) - 1))
         assert self._at is not None
         # Estimates of the input alone follow from each other, so that no second may be left out.
-        follows = any(known.model is None for known in joint.values())
+        follows = any(side.model is None for side in joint.values())
         for second in range(self._at[1] + 1 if follows else max(self._at[1] + 1, seconds), seconds + 1):
             self._at = begun_s, second
             self._newest = self._after(second, flying, joint)
@@ -78,11 +78,11 @@ class ArrivingInformation:
     def _after(self, second: int, flying: Maneuver, joint: Mapping[AxisName, Known]) -> Arriving:
         """Return the errors after a whole second of an input."""
         until_s = flying.span.start_s + second
-        found = arriving(flying, until_s, *self._known(joint, second, flying, _LONGER))
-        if found.is_enough and self._alone:
+        arrived = arriving(flying, until_s, *self._known(joint, second, flying, _LONGER))
+        if arrived.is_enough and self._alone:
             # Added information leaves out what one input has in common, such as its servo's lag.
-            found = arriving(flying, until_s, *self._known(joint, second, flying, 1))
-        return found
+            arrived = arriving(flying, until_s, *self._known(joint, second, flying, 1))
+        return arrived
 
     def _known(
         self, joint: Mapping[AxisName, Known], second: int, flying: Maneuver, longer: int
@@ -90,31 +90,31 @@ class ArrivingInformation:
         """Return the joint estimate of each axis. A moved axis without a joint estimate gets the estimate of
         the input alone.
         """
-        known: dict[AxisName, Known] = dict(joint)
+        by_axis: dict[AxisName, Known] = dict(joint)
         begun_s, until_s = flying.span.start_s, flying.span.start_s + second
         cut = up_to(until_s, flying)
         moved = {"pitch" if control == "elevator" else "lateral" for control in moved_controls(cut)}
-        for axis in [axis for axis, one in joint.items() if one.model is None and axis in moved]:
+        for axis in [axis for axis, before in joint.items() if before.model is None and axis in moved]:
             estimated = self._alone.get(axis)
             if estimated is None or until_s - begun_s >= longer * (estimated.since_s - begun_s):
                 alone = self._pitch(cut) if axis == "pitch" else self._side(cut)
                 self._alone[axis] = Known(*alone, until_s)
-            known[axis] = self._alone[axis]
-        return known["pitch"], known.get("lateral", Known(None, {}))
+            by_axis[axis] = self._alone[axis]
+        return by_axis["pitch"], by_axis.get("lateral", Known(None, {}))
 
     def _pitch(self, cut: Maneuver) -> tuple[Estimate | None, dict[str, float | None]]:
-        plan, found = self._aircraft.campaign, estimate(cut, self._aircraft)
-        if not isinstance(found, Estimate):
+        plan, alone = self._aircraft.campaign, estimate(cut, self._aircraft)
+        if not isinstance(alone, Estimate):
             return None, dict.fromkeys(plan.parameters)
-        share = knowledge([CandidateManeuver(found, maneuver=cut)], plan).share
-        return found, {name: _finite(100.0 * share[name]) for name in plan.parameters}
+        share = knowledge([CandidateManeuver(alone, maneuver=cut)], plan).share
+        return alone, {name: _finite(100.0 * share[name]) for name in plan.parameters}
 
     def _side(self, cut: Maneuver) -> tuple[Estimate | None, dict[str, float | None]]:
-        found = estimate_lateral([cut], self._aircraft)
-        if not isinstance(found, Estimate):
+        alone = estimate_lateral([cut], self._aircraft)
+        if not isinstance(alone, Estimate):
             return None, dict.fromkeys(JUDGED)
-        shares = shares_of(found, self._aircraft.campaign.tolerance_percent)
-        return found, {name: _finite(share) for name, share in shares.items()}
+        shares = shares_of(alone, self._aircraft.campaign.tolerance_percent)
+        return alone, {name: _finite(share) for name, share in shares.items()}
 
 
 def _finite(share: float) -> float | None:

@@ -286,28 +286,28 @@ class Campaign:
         self._journal.write(sentence, self._stream.now_s)
 
     def _take(self, events: Sequence[FlightEvent]) -> list[CampaignEvent]:
-        told = self._heard_verdicts()
+        news = self._heard_verdicts()
         for event in events:
-            told.append(event)
+            news.append(event)
             self._journal.take(event)
             match event:
                 case ModeChanged(mode, at_s):
                     self._whole_flights.change_mode(self.power_on, at_s, mode)
                 case ManeuverFlown(maneuver):
-                    told += self._give(self._elevator, maneuver)
+                    news += self._give(self._elevator, maneuver)
                 case SideManeuverFlown(maneuver) if self._lateral is not None:
-                    told += self._give(self._lateral, maneuver)
+                    news += self._give(self._lateral, maneuver)
                 case Activity():
                     joined = event.joined(self._activity[-1]) if self._activity else None
                     self._activity = (*self._activity[:-1], joined) if joined else (*self._activity, event)
                 case ManeuverAgain():
-                    told += self._heard_again(event)
+                    news += self._heard_again(event)
                 case ElevatorRescaled():
-                    told += self._count_anew(event)
+                    news += self._count_anew(event)
         if self._tell is not None:
-            for happened in told:
+            for happened in news:
                 self._tell(happened)
-        return told
+        return news
 
     def _give(self, half: AxisCampaign, maneuver: Maneuver) -> list[CampaignEvent]:
         """Start judging a manoeuvre that has just been flown, and return the verdicts that are ready."""

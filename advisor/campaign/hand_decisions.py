@@ -75,16 +75,16 @@ class ByHand:
 
     def on_flight(self, flight: int) -> "ByHand":
         """Return the decisions on one log or link, numbered as if it were the only one."""
-        return self._each(lambda one: [replace(one, flight=0)] if one.flight == flight else [])
+        return self._each(lambda entry: [replace(entry, flight=0)] if entry.flight == flight else [])
 
     def as_flight(self, flight: int) -> "ByHand":
         """Return the decisions on a single log or link, numbered as a flight of a campaign."""
-        return self._each(lambda one: [replace(one, flight=flight)])
+        return self._each(lambda entry: [replace(entry, flight=flight)])
 
     def _each(self, changed: Callable[[Any], list[Any]]) -> "ByHand":
         """Return the decisions with ``changed`` applied to each of the lists."""
         sections = (self.marks, self.excluded, self.notes, self.remarks)
-        return ByHand(*(tuple(new for one in section for new in changed(one)) for section in sections))
+        return ByHand(*(tuple(new for entry in section for new in changed(entry)) for section in sections))
 
 
 NOTHING = ByHand()
@@ -93,12 +93,12 @@ NOTHING = ByHand()
 
 def on_all(decided: Sequence[ByHand]) -> ByHand:
     """Return the decisions on all logs of a campaign, from the decisions on each log."""
-    flights = [one.as_flight(flight) for flight, one in enumerate(decided)]
+    flights = [hand.as_flight(flight) for flight, hand in enumerate(decided)]
     return ByHand(
-        tuple(mark for one in flights for mark in one.marks),
-        tuple(remark for one in flights for remark in one.excluded),
-        tuple(remark for one in flights for remark in one.notes),
-        tuple(remark for one in flights for remark in one.remarks),
+        tuple(mark for hand in flights for mark in hand.marks),
+        tuple(remark for hand in flights for remark in hand.excluded),
+        tuple(remark for hand in flights for remark in hand.notes),
+        tuple(remark for hand in flights for remark in hand.remarks),
     )
 
 

@@ -21,21 +21,21 @@ def as_known_by(maneuver: Maneuver, newest: Maneuver) -> Maneuver:
     A contradiction that only later manoeuvres show was not removed from the earlier manoeuvre's channels.
     """
     removed = {f.code for f in maneuver.findings if f.used}
-    told = tuple(f if f.code in removed else replace(f, used=False) for f in newest.findings)
-    if maneuver.power_on != newest.power_on or _codes(told) == _codes(maneuver.findings):
+    findings = tuple(f if f.code in removed else replace(f, used=False) for f in newest.findings)
+    if maneuver.power_on != newest.power_on or _codes(findings) == _codes(maneuver.findings):
         return maneuver
-    return replace(maneuver, findings=told)
+    return replace(maneuver, findings=findings)
 
 
 def together(
     maneuvers: Iterable[Maneuver], before_flying: Iterable[InstrumentFinding]
 ) -> tuple[InstrumentFinding, ...]:
     """Return each contradiction once, with the values from the newest manoeuvre that shows it."""
-    found = {f.code: f for f in before_flying}
+    by_code = {f.code: f for f in before_flying}
     for maneuver in maneuvers:
         frozen = (d.finding for d in maneuver.distrusts if d.left_out or d.stops)
-        found |= {f.code: f for f in (*maneuver.findings, *frozen)}
-    return tuple(found.values())
+        by_code |= {f.code: f for f in (*maneuver.findings, *frozen)}
+    return tuple(by_code.values())
 
 
 def with_fit(
@@ -56,14 +56,14 @@ def with_fit(
     single
         Estimates of all manoeuvres. Findings of single estimates refuse manoeuvres.
     """
-    found = {f.code: f for f in by_motion}
-    told = [] if model is None else list(findings_of(model, aircraft))
+    by_code = {f.code: f for f in by_motion}
+    findings = [] if model is None else list(findings_of(model, aircraft))
     for estimate in single:
         if isinstance(estimate, Estimate):
-            told += [f for f in findings_of(estimate, aircraft) if f.refuses]
-    for one in told:
-        found.setdefault(one.code, one)
-    return tuple(found.values())
+            findings += [f for f in findings_of(estimate, aircraft) if f.refuses]
+    for finding in findings:
+        by_code.setdefault(finding.code, finding)
+    return tuple(by_code.values())
 
 
 def side_signs(model: LateralEstimate | None, aircraft: Aircraft) -> tuple[InstrumentFinding, ...]:
@@ -74,7 +74,7 @@ def side_signs(model: LateralEstimate | None, aircraft: Aircraft) -> tuple[Instr
     the derivatives then have the sign that the parameters of the outputs give. The channels keep the log's
     sign where the motion contradicts that sign.
     """
-    found = []
+    findings = []
     for control, name, moves in (("aileron", "L_delta_a", "rolls"), ("rudder", "N_delta_r", "yaws")):
         if model is None or name in model.not_identifiable:
             continue
@@ -84,13 +84,13 @@ def side_signs(model: LateralEstimate | None, aircraft: Aircraft) -> tuple[Instr
             continue
         stated = getattr(aircraft, control).calibration is not None
         side, wrong = ("left", False) if value < 0.0 else ("right", True)
-        told = f"a positive one {moves} to the {side} ({symbol(name)} {with_half(value, half)})"
-        text = f"{control}.calibration states the sign: {told}"
+        shown = f"a positive one {moves} to the {side} ({symbol(name)} {with_half(value, half)})"
+        text = f"{control}.calibration states the sign: {shown}"
         if not stated:
-            text = f"no {control}.calibration states the sign of the {control}: {told}"
+            text = f"no {control}.calibration states the sign of the {control}: {shown}"
         if wrong:
             text += "; a positive deflection should be to the left; the derivatives keep this sign"
-        found.append(
+        findings.append(
             InstrumentFinding(
                 control,
                 "sign",
@@ -102,7 +102,7 @@ def side_signs(model: LateralEstimate | None, aircraft: Aircraft) -> tuple[Instr
                 used=wrong,
             )
         )
-    return tuple(found)
+    return tuple(findings)
 
 
 def _codes(findings: Iterable[InstrumentFinding]) -> set[tuple[str, bool]]:

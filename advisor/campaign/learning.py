@@ -52,11 +52,11 @@ def learnt(
     """
     if model is None or model.found is None:
         return aircraft
-    found = model.found if one_power_on else model.found.without("command_delay_s")
+    fresh = model.found if one_power_on else model.found.without("command_delay_s")
     if aircraft.elevator.lag_s is None and not knows_the_lag(model.instrument("servo_lag_s")):
         return aircraft
     used = found_of(aircraft)
-    return aircraft if used is not None and _is_no_news(used, found, exactly) else with_found(aircraft, found)
+    return aircraft if used is not None and _is_no_news(used, fresh, exactly) else with_found(aircraft, fresh)
 
 
 def _is_no_news(used: FoundInstruments, found_instruments: FoundInstruments, exactly: bool) -> bool:
@@ -75,17 +75,17 @@ def _is_no_news(used: FoundInstruments, found_instruments: FoundInstruments, exa
 
 def of_another_power_on(aircraft: Aircraft) -> Aircraft:
     """Return the aircraft before any manoeuvre of a power-on: with the delay of the command unknown."""
-    found = found_of(aircraft)
-    return aircraft if found is None else with_found(aircraft, found.without("command_delay_s"))
+    given = found_of(aircraft)
+    return aircraft if given is None else with_found(aircraft, given.without("command_delay_s"))
 
 
 def lag_said(aircraft: Aircraft) -> str:
     """Return the event log's sentence on the lag that every estimate uses now; empty without a lag."""
-    found, stated = found_of(aircraft), aircraft.elevator.lag_s
-    lag_s = None if found is None else found.value("servo_lag_s")
-    if found is None or lag_s is None:
+    given, stated = found_of(aircraft), aircraft.elevator.lag_s
+    lag_s = None if given is None else given.value("servo_lag_s")
+    if given is None or lag_s is None:
         return ""
-    std = float(found.std[found.names.index("servo_lag_s")])
+    std = float(given.std[given.names.index("servo_lag_s")])
     if stated is not None and abs(lag_s - stated) <= CONTRADICTS * std:
         return f"all manoeuvres together give a servo lag of {lag_s:.3f} s, as elevator.lag_s says"
     against = "" if stated is None else f", against {stated:.3f} s in elevator.lag_s,"

@@ -79,8 +79,8 @@ class Settling:
             over = flying.span.input_is_over
             if over:
                 self._stds.append((newest_s, estimated.std_cr))
-            known = over and not lag_is_unknown(aircraft) and agrees(estimated, model)
-            self._settled = Settled(estimated, known, self._enough(newest_s) if over else None)
+            is_known = over and not lag_is_unknown(aircraft) and agrees(estimated, model)
+            self._settled = Settled(estimated, is_known, self._enough(newest_s) if over else None)
         return self._settled
 
     def _enough(self, newest_s: float) -> str | None:

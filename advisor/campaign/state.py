@@ -84,10 +84,8 @@ def has_begun(judged: Sequence[JudgedManeuver]) -> bool:
     A refused pulse does not count, because hands that trim an axis also move its control away and back.
     """
     return any(
-        one.verdict.accepted
-        or one.maneuver.span.is_marked
-        or one.maneuver.span.kind not in ("other", "pulse")
-        for one in judged
+        m.verdict.accepted or m.maneuver.span.is_marked or m.maneuver.span.kind not in ("other", "pulse")
+        for m in judged
     )
 
 

@@ -107,7 +107,7 @@ class Weighed:
         """Probabilities of all alternatives by kind and name; None without evidence."""
         if not self.evidence:
             return None
-        each = [(one.alternative, one.probability) for one in self.evidence]
+        each = [(e.alternative, e.probability) for e in self.evidence]
         return Probabilities(
             none=sum(p for a, p in each if a.kind == "none"),
             parameters=sum(p for a, p in each if a.kind == "parameters"),

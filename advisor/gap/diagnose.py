@@ -125,11 +125,11 @@ def examine(
 
     if len(flights) == 1:
         return noted(*answer_of_one(problem, baseline, aircraft, kinematics))
-    found = infer(problem, baseline, aircraft, kinematics, prior, progress, mirror)
+    inference = infer(problem, baseline, aircraft, kinematics, prior, progress, mirror)
     progress("measuring the gap", 0.97)
-    aside = left_aside(given, aircraft.effects, () if found.sought_air.found is None else AIR)
+    aside = left_aside(given, aircraft.effects, () if inference.sought_air.found is None else AIR)
     circumstances = Circumstances(wind_shear(flown, over_read), weight, aside, speed is None)
-    answer = partial(answer_of, found, aircraft, kinematics, holdout, circumstances)
+    answer = partial(answer_of, inference, aircraft, kinematics, holdout, circumstances)
     whole = noted(*answer())
     return replace(whole, fewer=lambda most: noted(*answer(most)), seen_in=lambda x: noted(*answer(seen=x)))
 

@@ -91,17 +91,17 @@ Measured = tuple[float, Range]
 """One parameter of the requirements: its value and its 95 % interval."""
 
 
-def assess(category: Category, limits: Sequence[Sequence[Range]], found: Sequence[Measured]) -> LevelFound:
+def assess(category: Category, limits: Sequence[Sequence[Range]], measured: Sequence[Measured]) -> LevelFound:
     """Return the level of a mode, and the best and the worst level within its intervals.
 
     Parameters
     ----------
     limits
         Limits of Levels 1 to 3, each with one range for every parameter. Every level includes better ones.
-    found
+    measured
         Parameters in the order and in the units of the limits.
     """
-    values, intervals = [(value, value) for value, _ in found], [interval for _, interval in found]
+    values, intervals = [(value, value) for value, _ in measured], [interval for _, interval in measured]
 
     def first(ranges: Sequence[Range], agrees: Callable[[Range, Range], bool]) -> int:
         levels = (level for level, limit in enumerate(limits, start=1) if all(map(agrees, ranges, limit)))
@@ -112,9 +112,9 @@ def assess(category: Category, limits: Sequence[Sequence[Range]], found: Sequenc
     )
 
 
-def _lies_within(found: Range, limit: Range) -> bool:
-    return limit[0] <= found[0] and found[1] <= limit[1]
+def _lies_within(interval: Range, limit: Range) -> bool:
+    return limit[0] <= interval[0] and interval[1] <= limit[1]
 
 
-def _overlaps(found: Range, limit: Range) -> bool:
-    return limit[0] <= found[1] and found[0] <= limit[1]
+def _overlaps(interval: Range, limit: Range) -> bool:
+    return limit[0] <= interval[1] and interval[0] <= limit[1]

@@ -79,7 +79,7 @@ def infer(maneuver: Maneuver, aircraft: Aircraft) -> Channel:
         speed = np.interp(t, airspeed.t, airspeed.y)
     else:
         speed = np.full(len(t), aircraft.airspeed_m_s or np.nan)
-    found = inferred_alpha(maneuver.channels, speed)
-    if found is None:
+    alpha = inferred_alpha(maneuver.channels, speed)
+    if alpha is None:
         raise ValueError("the motion cannot replace the angle of attack")
-    return found
+    return alpha

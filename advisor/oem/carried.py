@@ -136,8 +136,8 @@ class UpdatableSolution:
         command = maneuver.command("elevator")
         begin = int(np.searchsorted(command.t, self._end_s - BEFORE_S))
         flown = command.t[begin:], command.y[begin:]
-        known = {"end": Signal(np.array([self._end_s]), np.empty(0)), **new}
-        t = events_of(known, [problem.servo.grid(flown[0])])
+        signals = {"end": Signal(np.array([self._end_s]), np.empty(0)), **new}
+        t = events_of(signals, [problem.servo.grid(flown[0])])
         laid = lay_rows([Piece(t, new, {})], OUTPUTS)
         gravity = np.full(len(t), last.gravity[-1])
         theta = maneuver.channels.get("theta")

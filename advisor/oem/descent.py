@@ -113,17 +113,17 @@ class _Setting(NamedTuple):
 
     def at(self, problem: Any, assembly: Laid, shared: FloatArray, local: FloatArray) -> Fit | None:
         """Return the fit at one setting; None if the simulation diverges."""
-        found = self.motion.respond(problem, assembly, shared, local, self.nuisances)
-        if found is None:
+        response = self.motion.respond(problem, assembly, shared, local, self.nuisances)
+        if response is None:
             return None
-        y = found.y
+        y = response.y
         noise, cost = weigh(assembly.z, y, assembly.channel, self.motion.floor(assembly))
         cost += float(np.sum(((assembly.z - y) / noise[assembly.channel]) ** 2))
         cost += float(self.prior.precision @ (shared - self.prior.mean) ** 2)
         cost += penalty(problem, self.nuisances)
-        optimum = Optimum(EXHAUSTED, shared, local, noise, cost, 0, y, found.g)
-        found = found._replace(columns=cache(found.columns))
-        return Fit(problem, assembly, optimum, self.nuisances, found)
+        optimum = Optimum(EXHAUSTED, shared, local, noise, cost, 0, y, response.g)
+        response = response._replace(columns=cache(response.columns))
+        return Fit(problem, assembly, optimum, self.nuisances, response)
 
     def step(self, fit: Fit, damping: float) -> "_Step | None":
         """Return the damped step from a fit; None if the data do not determine the step.
@@ -134,17 +134,17 @@ class _Setting(NamedTuple):
         system = _System.of(self.prior, fit)
         held: dict[int, float] = {}
         for _ in range(len(self.nuisances) + 1):
-            found = system.solved(damping, held)
-            if found is None:
+            solved = system.solved(damping, held)
+            if solved is None:
                 return None
-            wanted = found.shared[len(fit.optimum.shared) :]
+            wanted = solved.shared[len(fit.optimum.shared) :]
             moved = moved_by(wanted, fit.problem, self.nuisances)
             allowed = np.array([x.read(moved) - x.read(fit.problem) for x in self.nuisances])
             ends = np.flatnonzero(~np.isclose(allowed, wanted, rtol=1e-6, atol=1e-12))
             if not len(ends):
                 break
             held |= {int(j): float(allowed[j]) for j in ends}
-        return found
+        return solved
 
     def moved(self, fit: Fit, step: "_Step") -> Fit | None:
         """Return the fit after a step; None if the simulation diverges."""
@@ -209,8 +209,8 @@ class _System(NamedTuple):
         )
         information = information + np.transpose(np.tril(information, -1), (0, 2, 1))
         weight = np.concatenate([prior.precision, (extra.weight / extra.share) ** 2])
-        known = np.where(extra.weight > 0.0, extra.weight, 1.0)
-        off = np.concatenate([prior.mean - optimum.shared, extra.pull / known])
+        weight_or_one = np.where(extra.weight > 0.0, extra.weight, 1.0)
+        off = np.concatenate([prior.mean - optimum.shared, extra.pull / weight_or_one])
         common = free[free < s + k]
         places = np.arange(len(common))
         information[0, places, places] += weight[common]

@@ -74,10 +74,10 @@ def efficient_step(solution: Solution) -> Step | None:
     """Return the efficient step with the probabilities of its tests; None on numerical overflow."""
     colours, assembly = solution.noise.colours, solution.assembly
     weighing = Weighing.by(colours, assembly)
-    found = weighing.influence(solution.sensitivities, solution.extra)
-    if found is None:
+    influence = weighing.influence(solution.sensitivities, solution.extra)
+    if influence is None:
         return None
-    best, usual = found.first(N), solution.influence.first(N)
+    best, usual = influence.first(N), solution.influence.first(N)
     rows, plain = best.rows, usual.rows
     exact = Coloured(colours, np.ones(N))
     before = coloured(assembly, plain, exact) + usual.prior_covariance

@@ -36,13 +36,13 @@ def equation_error(problem: OutputErrorProblem) -> Mapping[str, Regressed]:
     if any("alpha" not in record.outputs for record in problem.records):
         return {}
     problem = replace(problem, records=tuple(_at_centre(record, problem) for record in problem.records))
-    found: dict[str, Regressed] = {}
+    by_name: dict[str, Regressed] = {}
     for output, names in _OF_PITCH.items():
         values, std = _with_errors(equations(problem, output))
         if output == "alpha":
             values[1] -= 1.0  # the pitch rate's own part of Eq. (1)
-        found |= _by_name(names, values, std)
-    return found
+        by_name |= _by_name(names, values, std)
+    return by_name
 
 
 def _at_centre(record: Record, problem: OutputErrorProblem) -> Record:
@@ -56,29 +56,29 @@ def _at_centre(record: Record, problem: OutputErrorProblem) -> Record:
 def lateral_equation_error(problem: LateralProblem) -> Mapping[str, Regressed]:
     """Return the derivatives of roll and yaw by equation error, without those of controls that do not
     move."""
-    found: dict[str, Regressed] = {}
+    by_name: dict[str, Regressed] = {}
     for names, parts in lateral_equations(problem).items():
-        found |= _by_name(names, *_with_errors(parts)) if parts else {}
-    return found
+        by_name |= _by_name(names, *_with_errors(parts)) if parts else {}
+    return by_name
 
 
 def _by_name(names: Sequence[str], values: FloatArray, std: FloatArray) -> dict[str, Regressed]:
-    told = zip(names, values.tolist(), std.tolist(), strict=True)
-    return {name: Regressed(value, error) for name, value, error in told if error > 0.0}
+    numbers = zip(names, values.tolist(), std.tolist(), strict=True)
+    return {name: Regressed(value, error) for name, value, error in numbers if error > 0.0}
 
 
 def _with_errors(parts: Sequence[Equations]) -> tuple[FloatArray, FloatArray]:
     """Return the common coefficients (k,) and their standard deviations for coloured residuals; 0 where a
     column is empty."""
-    found, own = regressed(parts)
+    theta, own = regressed(parts)
     kept = [p.common - p.own @ (np.linalg.pinv(p.own) @ p.common) for p in parts]
     influence = np.linalg.pinv(np.concatenate(kept)).T
     colour = find_colour(
         [
-            Stretch(p.side - p.common @ found - p.own @ mine, np.column_stack([p.common, p.own]))
+            Stretch(p.side - p.common @ theta - p.own @ mine, np.column_stack([p.common, p.own]))
             for p, mine in zip(parts, own, strict=True)
         ]
     )
     ends = np.cumsum([len(p.side) for p in parts])[:-1]
     covariance = sum(product(rows, colour) for rows in np.split(influence, ends))
-    return found, np.sqrt(np.maximum(np.diag(covariance), 0.0))
+    return theta, np.sqrt(np.maximum(np.diag(covariance), 0.0))

@@ -97,10 +97,10 @@ class Fit:
             corrected = replace(forces.solution, modes=solution.modes, alike=solution.alike)
             forces = forces._replace(solution=corrected)
             identified = refreshed(identified, corrected)
-        found = report(solution, self.prepared, self.aircraft, identified=identified, forces=forces)
+        reported = report(solution, self.prepared, self.aircraft, identified=identified, forces=forces)
         values = {x.instrument.name: (x.found.value, x.found.std) for x in identified}
         return replace(
-            found,
+            reported,
             terms=told(self.aircraft.estimation.added, values, self.fitted.solution, self._without),
             equation_error=equation_error(self.fitted.solution.problem),
         )
@@ -149,9 +149,9 @@ def _with_instruments(plain: Solution, aircraft: Aircraft, near: Solution | None
 
 def lag_is_unknown(aircraft: Aircraft) -> bool:
     """Return whether the servo's lag comes neither from the crew nor from an earlier manoeuvre."""
-    found = found_of(aircraft)
-    told = found is not None and "servo_lag_s" in found.names
-    return aircraft.elevator.lag_s is None and not told
+    instruments = found_of(aircraft)
+    has_lag = instruments is not None and "servo_lag_s" in instruments.names
+    return aircraft.elevator.lag_s is None and not has_lag
 
 
 def _solved(problem: OutputErrorProblem) -> Solution | NoEstimate:
@@ -240,9 +240,9 @@ def report(
     )
 
 
-def _given(found: FoundInstruments | None) -> Iterator[InstrumentEstimate]:
+def _given(given: FoundInstruments | None) -> Iterator[InstrumentEstimate]:
     """Yield the instruments that other manoeuvres have determined, without the coefficients of terms."""
-    for name, value, std in zip(found.names, found.values, found.std, strict=True) if found else ():
+    for name, value, std in zip(given.names, given.values, given.std, strict=True) if given else ():
         if name != "steady_moment_rad" and name in BY_NAME:
             yield InstrumentEstimate(name, float(value), float(std))
 

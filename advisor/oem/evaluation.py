@@ -23,8 +23,8 @@ def share_of(white: FloatArray, stated: FloatArray) -> float:
     ``white`` and ``stated`` are covariances (k, k). Parameters without error do not count.
     """
     variance = np.diag(stated)
-    known = variance > 0.0
-    ratio = np.sqrt(np.diag(white)[known] / variance[known])
+    moving = variance > 0.0
+    ratio = np.sqrt(np.diag(white)[moving] / variance[moving])
     return float(np.clip(np.median(ratio), LEAST_SHARE, 1.0)) if len(ratio) else 1.0
 
 

@@ -48,8 +48,8 @@ def moved_by(step: FloatArray, problem: Any, parameters: Sequence[Parameter]) ->
 
 def penalty(problem: object, parameters: Iterable[Parameter]) -> float:
     """Return -2 log of the priors' density, up to a constant, with the weights of a white-noise fit."""
-    known = [(x.read(problem), x.prior) for x in parameters if x.prior is not None]
-    return sum(((value - prior.mean) / (prior.std * prior.share)) ** 2 for value, prior in known)
+    stated = [(x.read(problem), x.prior) for x in parameters if x.prior is not None]
+    return sum(((value - prior.mean) / (prior.std * prior.share)) ** 2 for value, prior in stated)
 
 
 @dataclass(frozen=True, slots=True)
@@ -68,8 +68,8 @@ class Extra:
     @classmethod
     def at(cls, columns: FloatArray, values: FloatArray, priors: Sequence[Prior | None]) -> "Extra":
         """Return additional parameters at ``values`` (k,) with their priors."""
-        known = [prior or Prior(0.0, np.inf) for prior in priors]
-        mean, std, share = np.array([(p.mean, p.std, p.share) for p in known]).reshape(-1, 3).T
+        given = [prior or Prior(0.0, np.inf) for prior in priors]
+        mean, std, share = np.array([(p.mean, p.std, p.share) for p in given]).reshape(-1, 3).T
         return cls(columns, 1.0 / std, (mean - values) / std, share)
 
     @classmethod

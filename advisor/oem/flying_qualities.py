@@ -88,18 +88,18 @@ def flying_qualities(estimate: Estimate, air: AirData, reference: Reference) -> 
     """
     flown = estimate.airspeed_m_s
     read, speed = (None, None) if flown is None else (air.read_speed(flown), air.true_speed(flown))
-    found: dict[str, Quality] = {}
+    qualities: dict[str, Quality] = {}
     left_out: dict[str, str] = {}
     functions = _functions(speed, reference)
     for name, function in functions.items():
         quality = function if isinstance(function, str) else _with_error(function, estimate)
         if isinstance(quality, Quality):
-            found[name] = quality
+            qualities[name] = quality
         else:
             left_out[name] = quality
-    together = [functions[name] for name in _OF_THE_CHART if name in found]
+    together = [functions[name] for name in _OF_THE_CHART if name in qualities]
     correlation = _correlation(together, estimate)
-    return FlyingQualities(found, _levels(found), air, read, speed, left_out, correlation)
+    return FlyingQualities(qualities, _levels(qualities), air, read, speed, left_out, correlation)
 
 
 def _correlation(functions: Sequence[_Function | str], estimate: Estimate) -> float | None:
@@ -111,11 +111,11 @@ def _correlation(functions: Sequence[_Function | str], estimate: Estimate) -> fl
     return float(between / (a * b) ** 0.5) if a > 0.0 and b > 0.0 else None
 
 
-def _levels(found: Mapping[str, Quality]) -> tuple[LevelFound, ...]:
+def _levels(qualities: Mapping[str, Quality]) -> tuple[LevelFound, ...]:
     names = ("damping", "cap", "natural_frequency", "n_alpha")
-    if any(name not in found for name in names):
+    if any(name not in qualities for name in names):
         return ()
-    measured = [(found[name].value, found[name].ci95) for name in names]
+    measured = [(qualities[name].value, qualities[name].ci95) for name in names]
     return tuple(assess(category, LIMITS[category], measured) for category in CATEGORIES)
 
 
@@ -146,8 +146,8 @@ def _functions(speed: float | None, reference: Reference) -> dict[str, _Function
 def _margin(speed: float | None, reference: Reference) -> _Function | str:
     """Return the static margin as a function, in percent of the chord."""
     mass, chord, inertia = reference.mass_kg, reference.chord_m, reference.iyy_kg_m2
-    known = {"mass_kg": mass, "chord_m": chord, "iyy_kg_m2": inertia}
-    missing = [f"reference.{name}" for name, value in known.items() if value is None]
+    needed = {"mass_kg": mass, "chord_m": chord, "iyy_kg_m2": inertia}
+    missing = [f"reference.{name}" for name, value in needed.items() if value is None]
     if mass is None or chord is None or inertia is None:
         return f"{', '.join(missing)} {'is' if len(missing) == 1 else 'are'} not given"
     if speed is None:

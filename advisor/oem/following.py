@@ -107,9 +107,9 @@ class Follower:
             self._number, self._last, self._carried, self._coloured_s = maneuver.number, None, None, -math.inf
         now_s = float(maneuver.channels["q"].t[-1]) if maneuver.channels["q"] else -math.inf
         if self._carried is not None and now_s < self._solved_s + CARRY_S:
-            found = self._carried.on(maneuver)
-            if found is not None and self._doubt is not None:
-                return self._doubt.on(found)
+            carried = self._carried.on(maneuver)
+            if carried is not None and self._doubt is not None:
+                return self._doubt.on(carried)
         return self._complete(maneuver, now_s)
 
     def _complete(self, maneuver: Maneuver, now_s: float) -> Estimate | NoEstimate:
@@ -132,7 +132,7 @@ class Follower:
         self._last = solution if isinstance(solution, Solution) else None
         if isinstance(solution, NoEstimate):
             return solution
-        found = report(solution, prepared, self._aircraft, quick=True)
-        self._carried = UpdatableSolution(solution, prepared, found)
+        estimate = report(solution, prepared, self._aircraft, quick=True)
+        self._carried = UpdatableSolution(solution, prepared, estimate)
         self._doubt = Doubt.about(solution, self._aircraft)
-        return self._doubt.on(found)
+        return self._doubt.on(estimate)

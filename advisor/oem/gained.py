@@ -44,12 +44,12 @@ def told(
     without
         Function that returns the solution without one term; None without such a solution.
     """
-    found = []
+    estimates = []
     for name in (term.name for term in terms if term.name in values):
         other = without(name)
         gained = np.nan if other is None else log_likelihood(with_it) - log_likelihood(other)
-        found.append(TermEstimate(name, *values[name], gained))
-    return tuple(found)
+        estimates.append(TermEstimate(name, *values[name], gained))
+    return tuple(estimates)
 
 
 def without_term(aircraft: Aircraft, term: str) -> Aircraft:

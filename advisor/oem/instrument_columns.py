@@ -70,13 +70,13 @@ def _by_term(
     """Return the derivative of the outputs by a term's coefficient, shape (N,)."""
     alone = assemble(replace(problem, terms={**dict.fromkeys(problem.terms, 0.0), term: 1.0})).grid
     none = assemble(replace(problem, terms={})).grid
-    known, turned = alone.known - none.known, alone.turned
-    step = STEP / max(float(np.max(np.abs(known))), float(np.max(np.abs(turned))), 1e-300)
+    forced, turned = alone.known - none.known, alone.turned
+    step = STEP / max(float(np.max(np.abs(forced))), float(np.max(np.abs(turned))), 1e-300)
     ends = []
     for share in (step, -step):
         ends.append(np.empty(len(assembly.z)))
         grid = assembly.grid._replace(
-            known=assembly.grid.known + share * known, turned=assembly.grid.turned + share * turned
+            known=assembly.grid.known + share * forced, turned=assembly.grid.turned + share * turned
         )
         respond(grid, shared, local, ends[-1], np.empty((0, N_PARAMETERS)))
     return (ends[0] - ends[1]) / (2.0 * step)

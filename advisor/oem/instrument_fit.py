@@ -93,9 +93,9 @@ class InstrumentFit:
 
     def misfit(self, weighing: Weighing) -> float:
         """Return -2 log posterior density of the solution, up to a constant, under one noise model."""
-        found = self.solution
-        prior = penalty(found.problem, [x.instrument for x in self.identified])
-        return weighing.misfit(found.residual, found.sensitivities) + prior
+        solution = self.solution
+        prior = penalty(solution.problem, [x.instrument for x in self.identified])
+        return weighing.misfit(solution.residual, solution.sensitivities) + prior
 
 
 class _Pitch:
@@ -178,14 +178,14 @@ def fit_instruments(
     share = colour_share(plain)
     names = tuple(weighed(x, share) for x in unknown)
     best, *others = _hills(plain, names, share) if near is None else [near]
-    found = _fitted(best, names, share, final=False)
-    if found is not None:
-        share = colour_share(found)
+    fitted = _fitted(best, names, share, final=False)
+    if fitted is not None:
+        share = colour_share(fitted)
         names = tuple(weighed(x, share) for x in unknown)
-        found = _fitted(found, names, share)
-    if found is None:
+        fitted = _fitted(fitted, names, share)
+    if fitted is None:
         return InstrumentFit(plain) if near is None else fit_instruments(plain, unknown)
-    return _with_statements(names, _whole_posterior(found, names, others), plain, others)
+    return _with_statements(names, _whole_posterior(fitted, names, others), plain, others)
 
 
 def _hills(plain: Solution, names: Sequence[Instrument], share: float) -> list[Near]:
@@ -290,24 +290,24 @@ def _with_statements(
     if all((x.instrument.stated is None or x.found.contradicts) and not _cancels(x, alone) for x in alone):
         return InstrumentFit(solution, alone, not others)
     kept, problem = [], solution.problem
-    for one, white_std in zip(alone, white, strict=True):
-        x, found = one
-        share = min(1.0, float(white_std) / found.std)
-        if _cancels(one, alone):
-            kept.append(one._replace(instrument=replace(x, prior=Prior(0.0, MEASURED_LAG_S, share))))
+    for identified, white_std in zip(alone, white, strict=True):
+        x, value = identified
+        share = min(1.0, float(white_std) / value.std)
+        if _cancels(identified, alone):
+            kept.append(identified._replace(instrument=replace(x, prior=Prior(0.0, MEASURED_LAG_S, share))))
             continue
-        if x.stated is None or found.contradicts:
-            kept.append(one._replace(instrument=weighed(x, share)))
+        if x.stated is None or value.contradicts:
+            kept.append(identified._replace(instrument=weighed(x, share)))
             continue
         # A statement is trusted no better than the data confirm it. A confirmed zero holds exactly.
-        apart = abs(found.unstated_value - x.stated)
-        if x.known_to > 0.0 and (x.stated != 0.0 or apart > found.unstated_std):
+        apart = abs(value.unstated_value - x.stated)
+        if x.known_to > 0.0 and (x.stated != 0.0 or apart > value.unstated_std):
             width = max(x.known_to * abs(x.stated), apart)
-            kept.append(one._replace(instrument=replace(x, prior=Prior(x.stated, width, share))))
+            kept.append(identified._replace(instrument=replace(x, prior=Prior(x.stated, width, share))))
         else:
             problem = x.write(problem, x.stated)
             others = [replace(at, problem=x.write(at.problem, x.stated)) for at in others]
-    left = tuple(one.instrument for one in kept)
+    left = tuple(identified.instrument for identified in kept)
     final = _fitted(replace(solution, problem=problem), left, colour_share(solution))
     if final is None:
         return InstrumentFit(plain)
@@ -315,16 +315,16 @@ def _with_statements(
     return InstrumentFit(final, refreshed(kept, final), not others)
 
 
-def _cancels(one: Identified, all_of_them: Sequence[Identified]) -> bool:
+def _cancels(identified: Identified, all_of_them: Sequence[Identified]) -> bool:
     """Return whether a delay of the command cancels a lag that is stated as zero or not stated.
 
     Neither a command nor a measured surface acts before its own record. If a lag and a negative delay cancel,
     the delay alone describes their sum.
     """
-    x, found = one
+    x, value = identified
     delays = [other.found.value for other in all_of_them if other.instrument.name == COMMAND_DELAY.name]
     early = bool(delays) and delays[0] < -CLOCKS_S
-    return x.name == SERVO_LAG.name and x.stated in (0.0, None) and early and found.value > 0.0
+    return x.name == SERVO_LAG.name and x.stated in (0.0, None) and early and value.value > 0.0
 
 
 def _uncancelled(alone: tuple[Identified, ...]) -> tuple[Identified, ...]:
@@ -332,8 +332,7 @@ def _uncancelled(alone: tuple[Identified, ...]) -> tuple[Identified, ...]:
     stated zero.
     """
     return tuple(
-        one._replace(found=replace(one.found, contradicts=False)) if _cancels(one, alone) else one
-        for one in alone
+        x._replace(found=replace(x.found, contradicts=False)) if _cancels(x, alone) else x for x in alone
     )
 
 

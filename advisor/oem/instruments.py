@@ -185,11 +185,11 @@ def unknown_instruments(problem: OutputErrorProblem, aircraft: Aircraft) -> tupl
     gravity would describe the aircraft's motion equally well. One place must be known to determine the other
     place. Without a specific force only the priors determine the vane's place and delay.
     """
-    found = found_of(aircraft)
+    instruments = found_of(aircraft)
     command = COMMAND_DELAY.open(problem)
-    if found is not None:
+    if instruments is not None:
         wanted = (command, *map(coefficient, problem.terms))
-        return tuple(x for x in wanted if x.name not in found.names)
+        return tuple(x for x in wanted if x.name not in instruments.names)
     unknown = [*map(coefficient, problem.terms)]
     unknown += [_stated_or_open(SERVO_LAG, aircraft.elevator.lag_s, problem), command]
     if problem.reference_airspeed_m_s is not None:
@@ -213,9 +213,9 @@ def _stated_or_open(x: Instrument, stated: float | None, problem: OutputErrorPro
     return replace(x, stated=stated, prior=usual if stated is None else replace(usual, mean=stated))
 
 
-def as_found(problem: OutputErrorProblem, found: FoundInstruments | None) -> OutputErrorProblem:
+def as_found(problem: OutputErrorProblem, given: FoundInstruments | None) -> OutputErrorProblem:
     """Return the problem with the instruments that several manoeuvres determined together."""
-    for name, value in zip(found.names, found.values, strict=True) if found is not None else ():
+    for name, value in zip(given.names, given.values, strict=True) if given is not None else ():
         if name in BY_NAME or name in problem.terms:
             problem = (BY_NAME.get(name) or coefficient(name)).write(problem, float(value))
     return problem

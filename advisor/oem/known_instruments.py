@@ -80,7 +80,7 @@ class FoundInstruments:
 
     def without(self, name: InstrumentName) -> "FoundInstruments":
         """Return all instruments but one."""
-        kept = [i for i, one in enumerate(self.names) if one != name]
+        kept = [i for i, own in enumerate(self.names) if own != name]
         names = tuple(self.names[i] for i in kept)
         return replace(self, names=names, values=self.values[kept], std=self.std[kept])
 

@@ -103,9 +103,9 @@ def _correction(solution: Solution, at: Index) -> FloatArray:
         )
         answers[:, j] = (y - solution.fitted) / step
     weight = 1.0 / solution.optimum.noise[solution.assembly.channel]
-    known = solution.sensitivities[:, solution.assembly.free]
-    system = np.column_stack([known, answers]) * weight[:, None]
+    free = solution.sensitivities[:, solution.assembly.free]
+    system = np.column_stack([free, answers]) * weight[:, None]
     scale = np.linalg.norm(system, axis=0)
     scale[scale == 0.0] = 1.0
     change = np.linalg.lstsq(system / scale, solution.residual * weight, rcond=1e-10)[0] / scale
-    return np.asarray(change[known.shape[1] :])
+    return np.asarray(change[free.shape[1] :])

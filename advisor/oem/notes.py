@@ -94,11 +94,11 @@ def _is_worth_saying(identified: Identified) -> bool:
     """Return whether the data give an instrument value that differs from the file and from a sound
     instrument.
     """
-    x, found = identified.instrument, identified.found
+    x, value = identified.instrument, identified.found
     if x.stated is not None or x.prior is None:
-        return found.contradicts
+        return value.contradicts
     usual = 0.0 if x.name == "servo_lag_s" else x.prior.mean
-    return x.name != "alpha_delay_s" and abs(found.value - usual) > CONTRADICTS * found.std
+    return x.name != "alpha_delay_s" and abs(value.value - usual) > CONTRADICTS * value.std
 
 
 def _instrument(identified: Identified) -> str:
@@ -116,8 +116,8 @@ def _instrument(identified: Identified) -> str:
 
 
 def _found_lag(aircraft: Aircraft) -> str:
-    found = found_of(aircraft)
-    lag_s = None if found is None else found.value("servo_lag_s")
+    instruments = found_of(aircraft)
+    lag_s = None if instruments is None else instruments.value("servo_lag_s")
     if aircraft.elevator.lag_s is not None or lag_s is None:
         return ""
     return f"The servo's lag of {lag_s:.3f} s is used, as estimated from all manoeuvres."

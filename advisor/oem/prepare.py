@@ -102,11 +102,11 @@ def prepare(
 def _without_alpha(maneuvers: Sequence[Maneuver], aircraft: Aircraft, why: str) -> Prepared | NoEstimate:
     """Return a problem with the angle of attack as an unmeasured state, and q and a_z as outputs."""
     inferred = [infer(m, aircraft) for m in maneuvers]
-    known = [{**m.channels, "alpha": alpha} for m, alpha in zip(maneuvers, inferred, strict=True)]
+    with_alpha = [{**m.channels, "alpha": alpha} for m, alpha in zip(maneuvers, inferred, strict=True)]
     return _prepared(
         maneuvers,
         aircraft,
-        [airspeed(channels) for channels in known],
+        [airspeed(channels) for channels in with_alpha],
         [signal_of(alpha) for alpha in inferred],
         ["q", "a_z"],
         alpha_left_out=why,
@@ -131,20 +131,20 @@ def _prepared(
         speed.signal if speed is not None and together else constant_speed(maneuver, aircraft.airspeed_m_s)
         for maneuver, speed in zip(maneuvers, speeds, strict=True)
     ]
-    known = [signal for signal in signals if signal is not None]
-    flown_m_s = float(np.mean([signal.y.mean() for signal in known])) if known else None
+    flown = [signal for signal in signals if signal is not None]
+    flown_m_s = float(np.mean([signal.y.mean() for signal in flown])) if flown else None
     problem = OutputErrorProblem(
         records=tuple(
             _record(maneuver, signal, alpha, usable)
             for maneuver, signal, alpha in zip(maneuvers, signals, alphas, strict=True)
         ),
         reference_airspeed_m_s=reference_speed(
-            known, stated_reference(aircraft, maneuvers), all(v.smooth for v in measured)
+            flown, stated_reference(aircraft, maneuvers), all(v.smooth for v in measured)
         )
         if together
         else None,
         servo=Servo(aircraft.elevator.lag_s or 0.0, aircraft.elevator.delay_s or 0.0),
-        vane_arm_m=(aircraft.alpha.vane_arm_m or 0.0) if known else 0.0,
+        vane_arm_m=(aircraft.alpha.vane_arm_m or 0.0) if flown else 0.0,
         accelerometer_arm_m=aircraft.accelerometer.arm_m or 0.0,
         per_coefficient=_per_coefficient(aircraft, flown_m_s),
         alpha_is_computed="alpha" in usable and all(_is_computed(m.channels["alpha"]) for m in maneuvers),
@@ -179,17 +179,17 @@ def _structured(
     if isinstance(signals, NoEstimate):
         return signals
     records = tuple(replace(r, signals=s) for r, s in zip(problem.records, signals, strict=True))
-    known = {name: [one[name].y for one in signals] for name in signals[0]}
-    known |= {"alpha": [r.alpha.y for r in records], "delta_e": [r.elevator.y for r in records]}
+    series = {name: [s[name].y for s in signals] for name in signals[0]}
+    series |= {"alpha": [r.alpha.y for r in records], "delta_e": [r.elevator.y for r in records]}
     terms_at_zero = {term.name: 0.0 for term in terms}
-    return replace(problem, records=records, fixed=fixed, terms=terms_at_zero, means=means_of(known))
+    return replace(problem, records=records, fixed=fixed, terms=terms_at_zero, means=means_of(series))
 
 
 def _per_coefficient(aircraft: Aircraft, airspeed_m_s: float | None) -> Mapping[str, float]:
     """Return the moment derivatives for coefficients of 1, at sea-level density."""
     air = AirData(SEA_LEVEL_DENSITY_KG_M3, "sea level", "true")
-    found = scales(airspeed_m_s, aircraft.reference, air) if airspeed_m_s else {}
-    return {name: 1.0 / factor for name, factor in found.values() if name in COEFFICIENT_STD}
+    factors = scales(airspeed_m_s, aircraft.reference, air) if airspeed_m_s else {}
+    return {name: 1.0 / factor for name, factor in factors.values() if name in COEFFICIENT_STD}
 
 
 def _is_computed(alpha: Channel) -> bool:

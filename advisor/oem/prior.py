@@ -117,8 +117,8 @@ class Priors:
 def about_zero(precision: FloatArray) -> Priors:
     """Return priors about zero with the inverse variances ``precision`` (k,), and without an error."""
     std = np.full(len(precision), np.inf)
-    known = precision > 0.0
-    std[known] = precision[known] ** -0.5
+    finite = precision > 0.0
+    std[finite] = precision[finite] ** -0.5
     return Priors(np.zeros(len(precision)), std, None)
 
 

@@ -197,7 +197,7 @@ def _piece(record: Record, problem: OutputErrorProblem) -> Piece:
     at_event, start, arrival = problem.servo.move(*record.command, t, record.held)
     added = _added(record, problem, middle, (start[:-1] + arrival) / 2.0) if problem.terms else None
     ratio, airspeed, acceleration = np.ones(len(step)), np.ones(len(t)), np.zeros(len(t))
-    known = np.zeros(len(step))
+    forcing = np.zeros(len(step))
     if record.airspeed is not None:
         airspeed = record.airspeed.at(t)
         acceleration = _slope(airspeed, t)
@@ -205,21 +205,21 @@ def _piece(record: Record, problem: OutputErrorProblem) -> Piece:
         pull = GRAVITY_M_S2 / speed
         if problem.reference_airspeed_m_s is not None:
             ratio = speed / problem.reference_airspeed_m_s
-            known = pull - ratio * GRAVITY_M_S2 / problem.reference_airspeed_m_s
+            forcing = pull - ratio * GRAVITY_M_S2 / problem.reference_airspeed_m_s
             steady = problem.steady_moment_rad * steady_share(problem, airspeed)
             at_event, start, arrival = at_event + steady, start + steady, arrival + steady[1:]
         if record.normal_gravity is not None:
-            known += pull * (record.normal_gravity.at(middle) - 1.0)
+            forcing += pull * (record.normal_gravity.at(middle) - 1.0)
     gravity = np.full(len(t), GRAVITY_M_S2) if record.gravity_z is None else record.gravity_z.at(t)
     if record.sideslip_turn is not None:
-        known += record.sideslip_turn.at(middle)
+        forcing += record.sideslip_turn.at(middle)
         gravity = gravity + airspeed * record.sideslip_turn.at(t)  # the turn is no specific force
     columns = {
         "steps": padded(np.column_stack([np.round(step, STAMP_DIGITS), ratio])),
         "elevator": at_event,
         "start": start,
         "slope": padded((arrival - start[:-1]) / step),
-        "known": padded(known) if added is None else padded(known) + added[:, 0],
+        "known": padded(forcing) if added is None else padded(forcing) + added[:, 0],
         "turned": np.zeros(len(t)) if added is None else added[:, 1],
         "vane": -problem.vane_arm_m / airspeed if problem.vane_arm_m else np.zeros(len(t)),
         "airspeed": airspeed,

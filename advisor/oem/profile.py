@@ -78,12 +78,12 @@ class Profile:
         Each row has the value of the profiled parameter, then all parameters.
         """
         rows = np.column_stack([self.values, self.theta])
-        found = [row for row, nats in zip(rows, self.nats, strict=True) if nats <= ALIKE_NATS]
+        ends = [row for row, nats in zip(rows, self.nats, strict=True) if nats <= ALIKE_NATS]
         depth, limit = np.sqrt(self.nats), np.sqrt(ALIKE_NATS)  # of a parabola, linear in the parameter
         for k in np.flatnonzero(np.diff(self.nats <= ALIKE_NATS)):
             share = (limit - depth[k]) / (depth[k + 1] - depth[k])
-            found.append(rows[k] + share * (rows[k + 1] - rows[k]))
-        return np.array(found)
+            ends.append(rows[k] + share * (rows[k + 1] - rows[k]))
+        return np.array(ends)
 
 
 class Posterior(NamedTuple):
@@ -117,8 +117,8 @@ class Posterior(NamedTuple):
         """
         data = solution.optimum.log_likelihood_cost - penalty(solution.problem, searched)
         true = [replace(p, prior=replace(p.prior, share=1.0)) for p in self.parameters if p.prior is not None]
-        known = penalty(solution.problem, true) + self.usual(solution.problem, theta_of(solution))
-        return 0.5 * float(self.share**2 * data + known)
+        nats = penalty(solution.problem, true) + self.usual(solution.problem, theta_of(solution))
+        return 0.5 * float(self.share**2 * data + nats)
 
     def at(self, solution: Any) -> FloatArray:
         """Return parameters and nuisance parameters of a fit or solution, shape (p + k,)."""
@@ -173,11 +173,11 @@ def _walk(
         for _ in range(MOST_STEPS):
             there = x.moved(near.problem, way * std)
             ends = fall > FARTHEST_NATS or x.read(there) == x.read(near.problem)
-            found = None if ends else refit(others, there, near)
-            if found is None:
+            refitted = None if ends else refit(others, there, near)
+            if refitted is None:
                 break
-            near, fall = found, posterior.density(found, others) - begun
-            yield x.read(there), fall, posterior.at(found)
+            near, fall = refitted, posterior.density(refitted, others) - begun
+            yield x.read(there), fall, posterior.at(refitted)
 
 
 def _positive(matrix: FloatArray, scale: FloatArray) -> FloatArray:

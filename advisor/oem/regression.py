@@ -36,5 +36,5 @@ def regressed(parts: Sequence[Equations]) -> tuple[FloatArray, list[FloatArray]]
     ]
     stacked, sides = (np.concatenate(columns) for columns in zip(*rest, strict=True))
     size = np.maximum(np.linalg.norm(stacked, axis=0), 1e-12)
-    found = np.linalg.lstsq(stacked / size, sides, rcond=_INDIFFERENT)[0] / size
-    return found, [gain @ (part.side - part.common @ found) for part, gain in zip(parts, gains, strict=True)]
+    slope = np.linalg.lstsq(stacked / size, sides, rcond=_INDIFFERENT)[0] / size
+    return slope, [gain @ (part.side - part.common @ slope) for part, gain in zip(parts, gains, strict=True)]

@@ -86,8 +86,8 @@ def measured_in(
     outputs: Mapping[str, Signal], order: Sequence[str], delays_s: Mapping[str, float]
 ) -> dict[str, Signal]:
     """Return the finite samples of the outputs in ``order``, each at the time of its measurement."""
-    found = {name: finite(outputs[name]) for name in order if name in outputs}
-    return {name: Signal(signal.t - delays_s.get(name, 0.0), signal.y) for name, signal in found.items()}
+    measured = {name: finite(outputs[name]) for name in order if name in outputs}
+    return {name: Signal(signal.t - delays_s.get(name, 0.0), signal.y) for name, signal in measured.items()}
 
 
 def events_of(outputs: Mapping[str, Signal], inputs: Iterable[tuple[FloatArray, float]]) -> FloatArray:

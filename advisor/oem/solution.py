@@ -58,8 +58,8 @@ class Solution(Evaluated):
     def nuisances(self) -> Mapping[str, tuple[float, float]]:
         """Value and standard deviation of each nuisance parameter, in its unit, by its name."""
         std = np.sqrt(np.diag(self.widened))[len(self.theta) :]
-        told = zip(self.parameters, std, strict=False)
-        return {x.name: (x.read(self.problem), float(s)) for x, s in told}
+        pairs = zip(self.parameters, std, strict=False)
+        return {x.name: (x.read(self.problem), float(s)) for x, s in pairs}
 
 
 def solve(
@@ -153,8 +153,8 @@ def evaluate(
     if errors is None:
         return NOTHING_TO_TELL
     theta = reported(optimum.shared, optimum.local, assembly.names)
-    found = {"theta": theta, "extra": extra, "parameters": parameters, **errors}
-    return Solution(problem=problem, assembly=assembly, optimum=optimum, **found)
+    parts = {"theta": theta, "extra": extra, "parameters": parameters, **errors}
+    return Solution(problem=problem, assembly=assembly, optimum=optimum, **parts)
 
 
 def reported(shared: FloatArray, local: FloatArray, names: Names = NAMES) -> FloatArray:

@@ -42,13 +42,13 @@ def start(
         parts = equations(problem, output)
         if lift_from_alpha_only and not moment:
             parts = [Equations(p.common[:, :1], p.side - p.common[:, 1], p.own) for p in parts]
-        found, own = regressed(parts)
+        theta, own = regressed(parts)
         if moment:
-            shared[3:6] = found
+            shared[3:6] = theta
         elif lift_from_alpha_only:
-            shared[0] = found[0]
+            shared[0] = theta[0]
         else:
-            shared[0:3] = found
+            shared[0:3] = theta
             shared[1] -= 1.0
         local[:, [2 + first, first]] = own
     for m, record in enumerate(problem.records):

@@ -30,9 +30,9 @@ def recorded(
 
     ``own`` holds the names of signals that a record has anyway.
     """
-    found: list[dict[str, Signal]] = []
+    recorded_signals: list[dict[str, Signal]] = []
     for m in maneuvers:
-        found.append({})
+        recorded_signals.append({})
         for term in terms:
             for name in set(term.signals) - set(own):
                 if not has(m.channels, SIGNALS[name]):
@@ -40,8 +40,8 @@ def recorded(
                     text = f"The term {term.name} needs {missing}, which manoeuvre {m.number} does not have."
                     return NoEstimate("no_signal", text)
                 series = m.channels[SIGNALS[name]]
-                found[-1][name] = Signal(series.t - series.delay_s, series.y)
-    return found
+                recorded_signals[-1][name] = Signal(series.t - series.delay_s, series.y)
+    return recorded_signals
 
 
 def means_of(signals: Mapping[str, Sequence[FloatArray]]) -> dict[str, float]:

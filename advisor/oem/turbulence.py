@@ -135,4 +135,4 @@ def _residual_angle(rows: Sequence[Rows], rms: FloatArray) -> float:
 def spread_of(rows: Sequence[Rows]) -> FloatArray:
     """Return the root mean square residual of each output, shape (4,); 1 for a missing output."""
     picked = [np.concatenate([r.residual[r.channel == c] for r in rows]) for c in range(len(OUTPUTS))]
-    return np.array([max(float(np.sqrt(np.mean(one**2))), 1e-12) if len(one) else 1.0 for one in picked])
+    return np.array([max(float(np.sqrt(np.mean(r**2))), 1e-12) if len(r) else 1.0 for r in picked])

@@ -69,7 +69,7 @@ def solve_many(elevator: Signal, t: FloatArray, alpha: FloatArray, q: FloatArray
         return Batch(nothing, nothing, nothing[:, :2], np.zeros(len(alpha), np.int64))
     assembly = assemble(problem(alpha[0], q[0]))
     z = np.ascontiguousarray(np.concatenate([alpha, q], axis=1))
-    found, bounds, noise, iterations = solve_each(
+    theta, bounds, noise, iterations = solve_each(
         assembly.grid,
         z,
         assembly.channel,
@@ -83,8 +83,8 @@ def solve_many(elevator: Signal, t: FloatArray, alpha: FloatArray, q: FloatArray
     for i in np.flatnonzero(iterations < 0):
         again = solve(problem(alpha[i], q[i]))
         if not isinstance(again, NoEstimate):
-            found[i] = again.theta
+            theta[i] = again.theta
             bounds[i] = np.sqrt(np.diag(again.covariance_cr))
             noise[i] = again.optimum.noise[:2]
         iterations[i] = 0 if isinstance(again, NoEstimate) else again.optimum.iterations
-    return Batch(found, bounds, noise, iterations)
+    return Batch(theta, bounds, noise, iterations)

@@ -119,15 +119,15 @@ class LateralCampaign(AxisCampaign):
     @property
     def _may_stop(self) -> bool:
         """Whether the test can stop after the newest manoeuvre: once, and after both controls were flown."""
-        moved = {control for one in self._told if one is not None for control in one.flown}
-        return moved >= set(self._controls) and not any(one.stops for one in self._still_heard)
+        moved = {control for estimate in self._told if estimate is not None for control in estimate.flown}
+        return moved >= set(self._controls) and not any(item.stops for item in self._still_heard)
 
     @property
     def _told(self) -> list[LateralEstimate | None]:
         """Lateral estimate of every manoeuvre; None for a manoeuvre that is not accepted."""
         return [
-            one.estimate if one.verdict.accepted and isinstance(one.estimate, LateralEstimate) else None
-            for one in self.judged
+            m.estimate if m.verdict.accepted and isinstance(m.estimate, LateralEstimate) else None
+            for m in self.judged
         ]
 
     @property

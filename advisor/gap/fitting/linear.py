@@ -121,10 +121,10 @@ def _scale(point: SearchPoint) -> FloatArray:
     return np.asarray(np.maximum(np.abs(point.derivatives), _LEAST_SCALE))
 
 
-def are_near(one: SearchPoint, other: SearchPoint) -> bool:
+def are_near(point: SearchPoint, other: SearchPoint) -> bool:
     """Return whether sensitivities to nuisance parameters are nearly equal at two points of a model."""
-    reach = np.concatenate([_NEAR * _scale(one), *[_STEPS * np.array(e.steps) for e in one.effects]])
-    return bool(np.all(np.abs(other.shared - one.shared) <= reach))
+    reach = np.concatenate([_NEAR * _scale(point), *[_STEPS * np.array(e.steps) for e in point.effects]])
+    return bool(np.all(np.abs(other.shared - point.shared) <= reach))
 
 
 def shifted_points(point: SearchPoint, which: range) -> list[SearchPoint]:
@@ -175,10 +175,10 @@ def measured_columns(
     read = problem.read_all(flight, packs, rows[:-1])
     moved = np.concatenate([[0.0], steps, moves])
     seen = differences(read, problem.measured(flight), np.zeros(len(moved), dtype=np.int64), moved)
-    residual, shared, known = seen[:, :1], seen[:, 1 : k + 1], answers
-    if known is None:
+    residual, shared, own_known = seen[:, :1], seen[:, 1 : k + 1], answers
+    if own_known is None:
         own, speeds = seen[:, k + 1 :][:, : len(NUISANCES)], seen[:, k + 1 + len(NUISANCES) :]
-        known = np.hstack([own, _offsets(problem, flight), speeds @ flight.speed_error_factor])
+        own_known = np.hstack([own, _offsets(problem, flight), speeds @ flight.speed_error_factor])
     pulse = (lane(packs, len(rows) - 1) - lane(packs, 0)) / _PULSE
     to_edges = _answers_to_edges(problem, flight, pulse, p)
     if edges is not None:
@@ -186,7 +186,7 @@ def measured_columns(
             # Delay and latency shift the response to moved edges, a skew shifts its reading.
             turned = _answers_to_edges(problem, flight, pulse, shifted[time]) - to_edges
             shared[:, time] += turned @ edges / steps[time]
-    columns = np.hstack([known, to_edges, shared, residual])
+    columns = np.hstack([own_known, to_edges, shared, residual])
     return SensitivityColumns(columns, columns.shape[1] - k - 1)
 
 
@@ -279,8 +279,8 @@ def linearise(
     blocks = []
     for i, flight in enumerate(problem.flights.flights):
         moved = None if point.edges is None or not times else point.edges[i]
-        known = None if near is None else near[i].measured.own[:, : near[i].m - len(flight.edges)]
-        measured = measured_columns(problem, i, p[i], shifted[:, i], steps, moved, times, known)
+        answers = None if near is None else near[i].measured.own[:, : near[i].m - len(flight.edges)]
+        measured = measured_columns(problem, i, p[i], shifted[:, i], steps, moved, times, answers)
         prior, departure = _own_prior(problem, flight, measured.m), np.zeros(measured.m)
         departure[: len(NUISANCES)] = own_mean(flight) - point.own[i]
         columns = problem.innovations(i, measured.columns)

@@ -49,8 +49,8 @@ def gap_between(
         Mean squared errors over all manoeuvres, (channels,), and of each manoeuvre, (manoeuvres, channels);
         NaN where there are none.
     """
-    whole = [gap_of(one, floor) for one, _ in (before, after)]
-    each = [np.ma.masked_invalid(gap_of(one, floor)).mean(axis=1) for _, one in (before, after)]
+    whole = [gap_of(squares, floor) for squares, _ in (before, after)]
+    each = [np.ma.masked_invalid(gap_of(squares, floor)).mean(axis=1) for _, squares in (before, after)]
     by = [dict(zip(channels, values.tolist(), strict=True)) for values in (floor, *whole)]
     by_maneuver = tuple(zip(numbers, *(gaps.filled(np.nan).tolist() for gaps in each), strict=True))
     return Gap(float(np.mean(whole[0])), float(np.mean(whole[1])), by[0], note, by[1], by[2], by_maneuver)

@@ -197,11 +197,11 @@ class Neighbourhood:
         return np.asarray(np.maximum(after, 0.0) * self.fitted.noise[:, None] ** 2)
 
     def _asked(self, point: SearchPoint, first: int) -> _Asked:
-        known, k = len(self.information), len(DERIVATIVES)
-        steps = shared_steps(point)[known:]
+        n, k = len(self.information), len(DERIVATIVES)
+        steps = shared_steps(point)[n:]
         p = self.problem.driving(point)
-        there = shifted_points(point, range(known, known + len(steps)))
-        shifted = np.array([self.problem.driving(one) for one in there]).reshape(len(steps), *p.shape)
+        there = shifted_points(point, range(n, n + len(steps)))
+        shifted = np.array([self.problem.driving(at) for at in there]).reshape(len(steps), *p.shape)
         flown = np.any(shifted[:, :, k:] != p[:, k:], axis=2)
         moved = np.any(flown, axis=0) | np.any(p != self.p, axis=1)
         changes = (shifted[:, :, :k] - p[:, :k]) / steps[:, None, None]
@@ -217,12 +217,12 @@ class Neighbourhood:
         XX: FloatArray,
     ) -> SimulatedPoint:
         precision, departure = self.problem.prior_of(a.point)
-        known = len(self.information)
+        n = len(self.information)
         H, g = np.diag(precision), precision * departure
-        H[:known, :known] += self.information
-        H[:known, known:] += JX[:, 1:]
-        H[known:, :known] += JX[:, 1:].T
-        H[known:, known:] += XX[1:, 1:]
+        H[:n, :n] += self.information
+        H[:n, n:] += JX[:, 1:]
+        H[n:, :n] += JX[:, 1:].T
+        H[n:, n:] += XX[1:, 1:]
         g += np.concatenate([JX[:, 0], XX[1:, 0]])
         there = self.problem.with_own(a.point, owns)
         return SimulatedPoint(there, float(cost + precision @ departure**2), noise, H, g)
@@ -278,9 +278,9 @@ def _still(i: int, asked: Sequence[_Asked], width: int) -> FloatArray:
     return still
 
 
-def _with_one_another(still: FloatArray, known: FloatArray, flown: _Flown) -> FloatArray:
+def _with_one_another(still: FloatArray, columns: FloatArray, flown: _Flown) -> FloatArray:
     """Return inner products of the columns within each point, shape (width, width)."""
-    XX = still.T @ known
+    XX = still.T @ columns
     XX[flown.at] = XX[:, flown.at].T
     both = np.zeros((len(flown.at), len(flown.at)))
     for _, run in flown.points:

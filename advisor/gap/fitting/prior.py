@@ -54,8 +54,8 @@ def small_without_alpha(derivatives: FloatArray) -> FloatArray:
     The prior is that of the estimate (``advisor.oem.prior``).
     """
     shared = dict(zip(DERIVATIVES, derivatives, strict=True))
-    found = precision_without_alpha(np.array([shared.get(name, 0.0) for name in SHARED]))
-    return found[[SHARED.index(name) for name in DERIVATIVES]]
+    precision = precision_without_alpha(np.array([shared.get(name, 0.0) for name in SHARED]))
+    return precision[[SHARED.index(name) for name in DERIVATIVES]]
 
 
 def holding(
@@ -89,5 +89,5 @@ def own_precision(flight: PreparedManeuver) -> FloatArray:
     The pitch rate is measured, and no physics bounds the moment in trim: their priors are flat.
     """
     lift = _LOAD_FACTOR * GRAVITY_M_S2 / float(flight.trim[REFERENCE])
-    known = {"alpha_start": 1.0 / _START_RAD**2, "Z_trim": 1.0 / lift**2}
-    return np.array([known.get(name, 0.0) for name in NUISANCES])
+    stated = {"alpha_start": 1.0 / _START_RAD**2, "Z_trim": 1.0 / lift**2}
+    return np.array([stated.get(name, 0.0) for name in NUISANCES])

@@ -133,8 +133,8 @@ class EffectProblem:
         Initial states and trim terms come first. Edges come last, as places instead of steps.
         """
         n = point.own.shape[1]
-        found = zip(owns, self.flights.flights, strict=True)
-        edges = tuple(own[len(own) - len(flight.edges) :] for own, flight in found)
+        pairs = zip(owns, self.flights.flights, strict=True)
+        edges = tuple(own[len(own) - len(flight.edges) :] for own, flight in pairs)
         return replace(point, own=point.own + np.array([own[:n] for own in owns]), edges=edges)
 
     def prior_of(self, point: SearchPoint) -> tuple[FloatArray, FloatArray]:

@@ -56,12 +56,12 @@ def own_refitted(problem: EffectProblem, point: SearchPoint, noise: FloatArray) 
             linear = linearise(problem, replace(point, own=own, edges=None), shared=False)
             for i, block in enumerate(linear):
                 here, step = _refitted(problem, block, own[i], ranges[i], 1.0 / noise)
-                known = best[i]
-                if known is None or here.cost < known.cost:
+                earlier = best[i]
+                if earlier is None or here.cost < earlier.cost:
                     best[i], own[i] = here, own[i] + step
                 else:
-                    own[i] = 0.5 * (own[i] + known.own)
-    return held_out(problem, [one.residual for one in best if one is not None])
+                    own[i] = 0.5 * (own[i] + earlier.own)
+    return held_out(problem, [refit.residual for refit in best if refit is not None])
 
 
 def _refitted(

@@ -53,7 +53,7 @@ def regressions(flights: PreparedManeuvers) -> list[FloatArray]:
     as_stamped, left_share = _regressed(flights, Late())
     if left_share < _SIMULTANEOUS:
         return [as_stamped]
-    shifted, less = min((_regressed(flights, late) for late in _ONE_LATE), key=lambda found: found[1])
+    shifted, less = min((_regressed(flights, late) for late in _ONE_LATE), key=lambda pair: pair[1])
     return [as_stamped, shifted] if less < _BETTER * left_share else [as_stamped]
 
 
@@ -92,6 +92,6 @@ def _solved(rows: list[FloatArray], rates: list[FloatArray]) -> tuple[FloatArray
     X, y = np.vstack(rows), np.concatenate(rates)
     scale = np.sqrt(np.mean(X**2, axis=0)) + 1e-12
     Xs = X / scale
-    found = np.linalg.solve(Xs.T @ Xs + _RIDGE * len(X) * np.eye(X.shape[1]), Xs.T @ y)
-    residual = y - Xs @ found
-    return found / scale, float(residual @ residual) / max(float(y @ y), 1e-300)
+    theta = np.linalg.solve(Xs.T @ Xs + _RIDGE * len(X) * np.eye(X.shape[1]), Xs.T @ y)
+    residual = y - Xs @ theta
+    return theta / scale, float(residual @ residual) / max(float(y @ y), 1e-300)

@@ -73,15 +73,15 @@ def infer(
     sought = moving_air(problem, stage.best.fitted)
     floor = floor_of(problem, stage.best.fitted, stage.best.held_out)
     # The aircraft file may state moving air.
-    known = aircraft.effects.get("turbulence", {}).get("sigma_w_m_s", 0.0) / problem.flights.reference_m_s
+    sigma = aircraft.effects.get("turbulence", {}).get("sigma_w_m_s", 0.0) / problem.flights.reference_m_s
 
     def beyond(rows: list[Row[PitchModel]]) -> list[Row[PitchModel]]:
         with_offset = _with_offset(rows, kinematics, problem, prior, flight.tried[0])
-        return _named_air(with_offset, stage.plain, sought, known, floor)
+        return _named_air(with_offset, stage.plain, sought, sigma, floor)
 
     progress("searching for a second cause", 0.52)
-    found = decided(flight, stage, prior, beyond)
-    return Inference(found.posteriors, found.chosen, found.failed, found.heat, problem, sought, floor)
+    final = decided(flight, stage, prior, beyond)
+    return Inference(final.posteriors, final.chosen, final.failed, final.heat, problem, sought, floor)
 
 
 def _table(
@@ -113,10 +113,10 @@ def _with_offset(
     faulty = np.hypot(_OFF_BY_RAD, offset.std_rad)
     gain = 0.5 * offset.rad**2 * (natural**-2 - faulty**-2) - float(np.log(faulty / natural))
     gain += float(np.log(prior.effect / max(names, 1) / prior.none))
-    told = [row for row in rows if row.alternative == NONE]
+    none = [row for row in rows if row.alternative == NONE]
     others = (_gaining(row, "offset", max(0.0, gain)) for row in rows if row.alternative != NONE)
-    faults = (relabelled(_gaining(row, "offset", gain), stated_as("alpha_bias")) for row in told)
-    return [*told, *others, *faults]
+    faults = (relabelled(_gaining(row, "offset", gain), stated_as("alpha_bias")) for row in none)
+    return [*none, *others, *faults]
 
 
 def _gaining(row: Row[PitchModel], term: str, nats: float) -> Row[PitchModel]:
@@ -124,7 +124,7 @@ def _gaining(row: Row[PitchModel], term: str, nats: float) -> Row[PitchModel]:
 
 
 def _named_air(
-    rows: Sequence[Row[PitchModel]], plain: PitchModel, sought: SoughtAir, known: float, floor: FloatArray
+    rows: Sequence[Row[PitchModel]], plain: PitchModel, sought: SoughtAir, stated: float, floor: FloatArray
 ) -> list[Row[PitchModel]]:
     """Return the rows with moving air as the answer of still-air models without a larger cause.
 
@@ -133,7 +133,7 @@ def _named_air(
     in moving air, and a residual beyond the air stays an effect without a name.
     """
     air = sought.found
-    if air is None or air.is_natural or (not air.gust and air.angle_std <= known):
+    if air is None or air.is_natural or (not air.gust and air.angle_std <= stated):
         return list(rows)
     name, beyond = stated_as("gust" if air.gust else "turbulence"), air.mean_square_beyond_air
     plain_gap = whole_gap(plain.held_out.mean_square, floor)

@@ -52,12 +52,12 @@ def decided(
     posteriors = [posterior_of(beyond(rows_of(flight, stage, prior, pair)))]
     answer, chosen = posteriors[0].answer, [stage.plain]
     first = posteriors[0].explanation_of(answer)
-    if first.name and any(one.alternative == answer for one in stage.effects):
+    if first.name and any(e.alternative == answer for e in stage.effects):
         chosen.append(first)
         second = pair[1] if pair is not None and first is lead else stage_of(flight, first, _SECOND)
         posteriors.append(posterior_of(rows_of(flight, second, prior)))
         also = posteriors[-1].answer
-        if any(one.alternative == also for one in second.effects):
+        if any(e.alternative == also for e in second.effects):
             chosen.append(posteriors[-1].explanation_of(also))
     return Decided(tuple(posteriors), tuple(chosen), flight.parts.failed, stage.heat)
 
@@ -67,7 +67,7 @@ def _lead(flight: Flight[E], stage: Stage[E]) -> E | None:
     pair.
     """
     likely: dict[str, E] = {}
-    for one in sorted(stage.effects, key=lambda one: -one.evidence.either):
-        likely.setdefault(one.name, one)
+    for e in sorted(stage.effects, key=lambda e: -e.evidence.either):
+        likely.setdefault(e.name, e)
     _, *best = min(flight.pairs(stage, list(likely.values())[:_LEADS]), default=(0.0, "", ""))
     return next((lead for name, lead in likely.items() if name in best), None)

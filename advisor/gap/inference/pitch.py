@@ -115,22 +115,22 @@ class PitchFlight:
         mirrored = kept("effects of the simulator", search) if base is None else None
         return heat, [first, *filter(None, (*models, mirrored))]
 
-    def at_the_files(self, one: PitchModel, plain: PitchModel, heat: float) -> PitchModel | None:
+    def at_the_files(self, model: PitchModel, plain: PitchModel, heat: float) -> PitchModel | None:
         """Return an explanation refitted about the file's derivatives; None without such a fit."""
-        near = one.problem.within(ERROR_IF_RIGHT)
-        made = fit(near, one.fitted.point, one.fitted.noise, iterations=5)
+        near = model.problem.within(ERROR_IF_RIGHT)
+        made = fit(near, model.fitted.point, model.fitted.noise, iterations=5)
         if not np.isfinite(made.cost):
             return None
-        told = self.model_of(near, one.variant, made, plain.fitted, heat)
-        return replace(told, alternative=one.alternative, taken_out=one.taken_out, chance=one.chance)
+        right = self.model_of(near, model.variant, made, plain.fitted, heat)
+        return replace(right, alternative=model.alternative, taken_out=model.taken_out, chance=model.chance)
 
-    def apart(self, one: PitchModel, other: PitchModel) -> float:
+    def apart(self, model: PitchModel, other: PitchModel) -> float:
         """Return the largest difference between two models' outputs, as a share of the outputs' peaks."""
-        return change_of(self.problem, one.fitted, other.fitted)
+        return change_of(self.problem, model.fitted, other.fitted)
 
-    def residual(self, one: PitchModel, heat: float) -> Residual:
+    def residual(self, model: PitchModel, heat: float) -> Residual:
         """Return the disturbance that explains the residual of a model best."""
-        return residual_of(one.problem, one.fitted, heat)
+        return residual_of(model.problem, model.fitted, heat)
 
     def natural_nats(self, lead: PitchModel, pair: PitchModel) -> float:
         """Return the log prior gain of the lead's size in a pair, if that size is natural to every
@@ -167,19 +167,19 @@ class PitchFlight:
         self, problem: FlightProblem, variant: Variant | None, made: EffectFit, plain: EffectFit, heat: float
     ) -> PitchModel:
         """Return a model with its evidence, which a loss on held-out manoeuvres may reduce."""
-        held, told = hold_out(problem, made), evidence_of(problem, made, heat)
+        held, evidence = hold_out(problem, made), evidence_of(problem, made, heat)
         model = partial(
             PitchModel, variant=variant, problem=problem, fitted=made, held_out=held,
             likelihood=log_likelihood(problem, made) / heat, change=change_of(problem, plain, made),
         )  # fmt: skip
         if variant is None:
-            return model(alternative=None, evidence=told, natural=told)
+            return model(alternative=None, evidence=evidence, natural=evidence)
         unseen = 0.0 if variant.needs else _lost_unseen(problem, plain, made, held) / heat
         extra = _extra(variant, len(problem.flights)) + unseen
         is_law = any(variant.effect == law.effect for law in self.laws)
         return model(
             alternative=replace(UNKNOWN, block=variant.block) if is_law else stated_as(variant.effect),
-            name=variant.effect, numbers=variant.names, evidence=told.more(extra), unseen=unseen,
+            name=variant.effect, numbers=variant.names, evidence=evidence.more(extra), unseen=unseen,
             natural=evidence_of(problem, made, heat, natural_shares(variant)).more(extra),
         )  # fmt: skip
 
@@ -196,10 +196,10 @@ def _without_the_effect(problem: FlightProblem, plain: EffectFit, fits: Sequence
     return made if np.isfinite(made.cost) and made.cost < plain.cost else plain
 
 
-def change_of(problem: EffectProblem, one: EffectFit, other: EffectFit) -> float:
+def change_of(problem: EffectProblem, fit: EffectFit, other: EffectFit) -> float:
     """Return the largest difference between two models' outputs, as a share of each identifying channel's
     peak."""
-    squares = mean_squares(problem, [a - b for a, b in zip(one.residuals, other.residuals, strict=True)])
+    squares = mean_squares(problem, [a - b for a, b in zip(fit.residuals, other.residuals, strict=True)])
     share = np.sqrt(np.mean(squares, axis=0)) / problem.flights.peaks
     return float(np.max(share[problem.flights.telling]))
 

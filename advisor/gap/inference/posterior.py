@@ -111,15 +111,15 @@ def _ways(flight: Flight[E], stage: Stage[E], prior: FieldPrior) -> Iterator[Row
     for answer, side, chance in _without_effect(flight, prior):
         yield _row(answer, plain, getattr(plain.evidence, side), without * chance)
         # As little of an effect as every aircraft has is no finding.
-        for one in stage.effects:
-            yield _row(answer, one, getattr(one.natural, side), natural * chance)
-    for one in (*stage.effects, *stage.mirrored):
-        assert one.alternative is not None
-        forms = max(sum(other.name == one.name for other in stage.effects), 1)
-        yield _row(one.alternative, one, one.evidence.either, each * one.chance / forms)
-    for one in stage.laws:
-        assert one.alternative is not None
-        yield _row(one.alternative, one, one.evidence.either, 0.5 * prior.unknown / laws)
+        for e in stage.effects:
+            yield _row(answer, e, getattr(e.natural, side), natural * chance)
+    for e in (*stage.effects, *stage.mirrored):
+        assert e.alternative is not None
+        forms = max(sum(other.name == e.name for other in stage.effects), 1)
+        yield _row(e.alternative, e, e.evidence.either, each * e.chance / forms)
+    for e in stage.laws:
+        assert e.alternative is not None
+        yield _row(e.alternative, e, e.evidence.either, 0.5 * prior.unknown / laws)
 
 
 def _without_effect(flight: Flight[E], prior: FieldPrior) -> list[tuple[Alternative, str, float]]:
@@ -136,40 +136,40 @@ def _pairs(
     # A law without a name may look like both causes, the likelier the more motion it explains.
     first = next(way for way in ways if way.explanation is lead and way.alternative.is_effect)
     of_first, tried = max(lead.evidence.either - plain.evidence.either, 0.0), flight.tried
-    for one in (*second.effects, *second.laws):
-        outside = any(one is law for law in second.laws)
+    for e in (*second.effects, *second.laws):
+        outside = any(e is law for law in second.laws)
         share = 0.5 * prior.unknown / tried[1] if outside else prior.effect / max(tried[0] - 1, 1)
-        gained = one.evidence.either - second.plain.evidence.either
+        gained = e.evidence.either - second.plain.evidence.either
         more = gained + float(np.log(share / (prior.none + prior.parameters)))
-        way = replace(first, terms={**first.terms, "second": more}, pair=one)
+        way = replace(first, terms={**first.terms, "second": more}, pair=e)
         left = max(gained, 0.0) / max(of_first + max(gained, 0.0), 1e-12) if outside else 0.0
-        if left > 0.0 and one.alternative is not None:
+        if left > 0.0 and e.alternative is not None:
             terms = {**way.terms, "second": more + float(np.log(left))}
-            yield replace(way, alternative=one.alternative, terms=terms)
+            yield replace(way, alternative=e.alternative, terms=terms)
         # As little of the first effect as every aircraft has is no finding: the second effect is.
-        small = {**first.terms, "natural": flight.natural_nats(lead, one)}
+        small = {**first.terms, "natural": flight.natural_nats(lead, e)}
         natural = 0.5 / max(tried[0], 1)
-        same = (w.explanation for w in ways if w.alternative == one.alternative)
-        alone = one if outside else next(same, None)
-        if one.alternative is not None and alone is not None:
+        same = (w.explanation for w in ways if w.alternative == e.alternative)
+        alone = e if outside else next(same, None)
+        if e.alternative is not None and alone is not None:
             odds = float(np.log(natural * (prior.none + prior.parameters)))
             terms = {**small, "prior": odds, "second": more}
-            yield replace(way, alternative=one.alternative, explanation=alone, terms=terms)
+            yield replace(way, alternative=e.alternative, explanation=alone, terms=terms)
         # Natural amounts of both are no finding either.
         for answer, side, chance in () if outside else _without_effect(flight, prior):
-            as_small = getattr(one.natural, side) - second.plain.evidence.either
+            as_small = getattr(e.natural, side) - second.plain.evidence.either
             terms = small | {"prior": float(np.log(natural**2 * chance)), "second": as_small}
             yield replace(way, alternative=answer, terms=terms)
         if left < 1.0:
             yield replace(way, terms={**way.terms, "second": more + float(np.log1p(-left))})
 
 
-def _row(alternative: Alternative, one: E, evidence: float, share: float) -> Row[E]:
-    numbers = evidence - one.likelihood - one.unseen - one.model_error
+def _row(alternative: Alternative, e: E, evidence: float, share: float) -> Row[E]:
+    numbers = evidence - e.likelihood - e.unseen - e.model_error
     return Row(
-        alternative, one,
-        {"prior": float(np.log(share)), "fit": one.likelihood, "numbers": numbers, "unseen": one.unseen,
-         "model_error": one.model_error},
+        alternative, e,
+        {"prior": float(np.log(share)), "fit": e.likelihood, "numbers": numbers, "unseen": e.unseen,
+         "model_error": e.model_error},
     )  # fmt: skip
 
 
@@ -184,8 +184,8 @@ def _with_residual(way: Row[E], residual: Residual, prior: FieldPrior) -> Iterat
         if block in _ALWAYS:
             yield replace(way, terms={**way.terms, "residual": as_lacking + float(np.log(0.5 * share))})
             continue
-        told = {"prior": way.terms["prior"] + lacking + float(np.log(share)), "residual": as_lacking}
-        yield replace(way, alternative=replace(UNKNOWN, block=block), terms={**way.terms, **told})
+        terms = {"prior": way.terms["prior"] + lacking + float(np.log(share)), "residual": as_lacking}
+        yield replace(way, alternative=replace(UNKNOWN, block=block), terms={**way.terms, **terms})
 
 
 def posterior_of(rows: Iterable[Row[E]]) -> Posterior[E]:

@@ -35,28 +35,28 @@ def prior_speed(problem: EffectProblem, baseline: EffectFit) -> float | None:
     if prior is None or not flights.speed_measured:
         return None
     n = len(prior)
-    found = baseline.point.derivatives
-    known = covariance_of(problem, baseline, colour_of(problem, baseline))[:n, :n]
-    here = evidence_of_file(found, known, prior)
+    derivatives = baseline.point.derivatives
+    cov = covariance_of(problem, baseline, colour_of(problem, baseline))[:n, :n]
+    here = evidence_of_file(derivatives, cov, prior)
     if here.right >= here.wrong:
         return None
     flown = np.concatenate([flight.slow[SPEED] for flight in flights.flights]) / flights.reference_m_s
     lowest, highest = max(np.min(flown), 1.0 - _FARTHEST), min(np.max(flown), 1.0 + _FARTHEST)
     shares = np.linspace(lowest, highest, _TRIED)
-    each = [evidence_of_file(found, known, prior * share**-_POWERS) for share in shares]
+    each = [evidence_of_file(derivatives, cov, prior * share**-_POWERS) for share in shares]
     # Any speed that was flown is alike likely, for right and for wrong derivatives.
-    if np.logaddexp.reduce([one.wrong for one in each]) > np.logaddexp.reduce([one.right for one in each]):
+    if np.logaddexp.reduce([e.wrong for e in each]) > np.logaddexp.reduce([e.right for e in each]):
         return None
-    return float(shares[int(np.argmax([one.right for one in each]))] * flights.reference_m_s)
+    return float(shares[int(np.argmax([e.right for e in each]))] * flights.reference_m_s)
 
 
-def evidence_of_file(derivatives: FloatArray, known: FloatArray, prior: FloatArray) -> Evidence:
+def evidence_of_file(derivatives: FloatArray, cov: FloatArray, prior: FloatArray) -> Evidence:
     """Return the evidence for right and for wrong derivatives (6,) of an aircraft file.
 
-    ``derivatives`` (6,) and ``known`` (6, 6) are the fitted derivatives and their covariance.
+    ``derivatives`` (6,) and ``cov`` (6, 6) are the fitted derivatives and their covariance.
     """
     right, wrong = (
         Prior(prior_precision(prior, tolerance), prior - derivatives)
         for tolerance in (ERROR_IF_RIGHT, ERROR_IF_WRONG)
     )
-    return marginal(0.0, np.asarray(np.linalg.inv(known)), np.zeros(len(prior)), right, wrong)
+    return marginal(0.0, np.asarray(np.linalg.inv(cov)), np.zeros(len(prior)), right, wrong)

@@ -84,12 +84,12 @@ def innovation_noise(problem: EffectProblem) -> FloatArray:
     return np.ones(len(problem.channels)) if problem.knows_the_noise else problem.instruments
 
 
-def _density(size: float, error: float, freedom: int, told: tuple[float, float]) -> float:
-    """Return the log density, nats, of a size by its mean and its standard deviation in ``told``.
+def _density(size: float, error: float, freedom: int, population: tuple[float, float]) -> float:
+    """Return the log density, nats, of a size by its mean and its standard deviation in ``population``.
 
     A squared size with an error has Student's distribution: it may stand for all sizes on a grid.
     """
-    mean, std = told
+    mean, std = population
     sizes, student = np.log([max(size, _LEAST_MISFIT)]), np.zeros(1)
     if error > 0.0:
         sizes = np.linspace(np.log(_LEAST_MISFIT), np.log(1e3), 400)

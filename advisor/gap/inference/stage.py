@@ -40,7 +40,7 @@ class Stage(Generic[E]):
     @property
     def best(self) -> E:
         """The explanation with the largest evidence next to the simulator as given."""
-        return max((self.plain, *self.effects, *self.laws), key=lambda one: one.evidence.either)
+        return max((self.plain, *self.effects, *self.laws), key=lambda e: e.evidence.either)
 
 
 Pairs = Iterator[tuple[float, str, str]]
@@ -92,13 +92,13 @@ class Flight(Protocol[E]):
         numerical fault ends, is left out. The effect None stands for the plain model.
         """
 
-    def at_the_files(self, one: E, plain: E, heat: float) -> E | None:
+    def at_the_files(self, model: E, plain: E, heat: float) -> E | None:
         """Return an explanation refitted about the file's derivatives; None without such a fit."""
 
-    def apart(self, one: E, other: E) -> float:
+    def apart(self, model: E, other: E) -> float:
         """Return the largest difference between the outputs of two models, as a share of the peaks."""
 
-    def residual(self, one: E, heat: float) -> Residual:
+    def residual(self, model: E, heat: float) -> Residual:
         """Return the disturbance that explains the residual of a model best."""
 
     def in_moving_air(self, stage: Stage[E]) -> Stage[E] | None:
@@ -119,38 +119,38 @@ def stage_of(flight: Flight[E], base: E | None, most: int) -> Stage[E]:
         Number of effects that are fully fitted.
     """
     heat, everyone = flight.explained(base, most)
-    best = max(one.evidence.either for one in everyone)
-    everyone = [_at_the_files(flight, one, everyone[0], heat, best) for one in everyone]
+    best = max(e.evidence.either for e in everyone)
+    everyone = [_at_the_files(flight, e, everyone[0], heat, best) for e in everyone]
     plain, *added = within_model_error(flight, everyone, 0.0 if base is None else base.form_error)
     # A simulator that loses an effect has no added effect, and so no name.
-    mirrored = tuple(one for one in added if not one.name)
-    added = [one for one in added if one.name]
-    effects = tuple(one for one in added if one.alternative is not None and one.alternative.is_effect)
-    laws = tuple(one for one in added if one.alternative is None or not one.alternative.is_effect)
+    mirrored = tuple(e for e in added if not e.name)
+    added = [e for e in added if e.name]
+    effects = tuple(e for e in added if e.alternative is not None and e.alternative.is_effect)
+    laws = tuple(e for e in added if e.alternative is None or not e.alternative.is_effect)
     return Stage(plain, effects, laws, heat, mirrored)
 
 
-def _at_the_files(flight: Flight[E], one: E, plain: E, heat: float, best: float) -> E:
+def _at_the_files(flight: Flight[E], model: E, plain: E, heat: float, best: float) -> E:
     """Return an explanation refitted about the file's derivatives, if that fit is likelier."""
-    if not flight.is_stated or max(one.evidence.wrong, one.evidence.right) < best - REFINED:
-        return one
-    right = flight.at_the_files(one, plain, heat)
+    if not flight.is_stated or max(model.evidence.wrong, model.evidence.right) < best - REFINED:
+        return model
+    right = flight.at_the_files(model, plain, heat)
     if right is None:
-        return one
-    told = right.evidence.right if one.name else max(right.evidence.right, one.evidence.right)
+        return model
+    likelihood = right.evidence.right if model.name else max(right.evidence.right, model.evidence.right)
     return replace(
-        right if told > one.evidence.wrong else one,
-        evidence=replace(one.evidence, right=told),
-        natural=replace(one.natural, right=max(right.natural.right, one.natural.right)),
+        right if likelihood > model.evidence.wrong else model,
+        evidence=replace(model.evidence, right=likelihood),
+        natural=replace(model.natural, right=max(right.natural.right, model.natural.right)),
     )
 
 
 def likeliest(screened: Sequence[Q], most: int) -> Iterator[Q]:
     """Yield the quick fits of the likeliest effects, at most ``_FORMS`` of each effect."""
     kept: dict[str, list[Q]] = {}
-    for one in sorted(screened, key=lambda s: s.price):
-        if one.name in kept or len(kept) < most:
-            kept.setdefault(one.name, []).append(one)
+    for s_one in sorted(screened, key=lambda s: s.price):
+        if s_one.name in kept or len(kept) < most:
+            kept.setdefault(s_one.name, []).append(s_one)
     for forms in kept.values():
         yield from forms[:_FORMS]
 
@@ -169,13 +169,13 @@ def within_model_error(flight: Flight[E], everyone: Sequence[E], error: float) -
     # What the best model loses on held-out manoeuvres is no advantage over the others.
     best = max(everyone, key=_told)
 
-    def lifted(one: E) -> E:
-        least = _told(best) - most_nats(flight.apart(one, best), error, best.form_error)
-        return one.lifted(max(0.0, least - one.likelihood))
+    def lifted(e: E) -> E:
+        least = _told(best) - most_nats(flight.apart(e, best), error, best.form_error)
+        return e.lifted(max(0.0, least - e.likelihood))
 
-    return [one if one is best else lifted(one) for one in everyone]
+    return [e if e is best else lifted(e) for e in everyone]
 
 
-def _told(one: E) -> float:
+def _told(model: E) -> float:
     """Return a model's log likelihood in the fit and on held-out manoeuvres, nats."""
-    return one.likelihood + one.unseen
+    return model.likelihood + model.unseen

@@ -58,12 +58,12 @@ def airspeed_on(
     Accelerometers show the change of the true air speed, which is ``true_over_read`` times the sensor's
     reading.
     """
-    found = maneuver.channels
-    t, y = found["airspeed"].t - start_s, found["airspeed"].y
+    channels = maneuver.channels
+    t, y = channels["airspeed"].t - start_s, channels["airspeed"].y
     as_read = smooth(np.interp(grid, t, y), _READ_OVER_S)
-    if not all(name in found and len(found[name]) > 10 for name in ("a_x", "a_z", "theta", "alpha")):
+    if not all(name in channels and len(channels[name]) > 10 for name in ("a_x", "a_z", "theta", "alpha")):
         return as_read
-    shape = integrated(grid, speed_rate_at(grid + start_s, found)) / true_over_read
+    shape = integrated(grid, speed_rate_at(grid + start_s, channels)) / true_over_read
     inside = (t >= grid[0]) & (t <= grid[-1])
     if np.count_nonzero(inside) < _LEAST_SAMPLES:
         return as_read
@@ -108,10 +108,10 @@ def speed_error_factors(
 
 def along_the_path(grid: FloatArray, maneuver: Maneuver, start_s: float) -> FloatArray:
     """Return thrust minus drag over mass, a_x cos α + a_z sin α, m/s², shape (n,); 0 if not measured."""
-    found = maneuver.channels
-    if not all(name in found and len(found[name]) > 10 for name in ("a_x", "a_z", "alpha")):
+    channels = maneuver.channels
+    if not all(name in channels and len(channels[name]) > 10 for name in ("a_x", "a_z", "alpha")):
         return np.zeros(len(grid))
-    t = found["a_z"].t
-    alpha, a_x = (np.interp(t, found[name].t, found[name].y) for name in ("alpha", "a_x"))
-    along = a_x * np.cos(alpha) + found["a_z"].y * np.sin(alpha)
+    t = channels["a_z"].t
+    alpha, a_x = (np.interp(t, channels[name].t, channels[name].y) for name in ("alpha", "a_x"))
+    along = a_x * np.cos(alpha) + channels["a_z"].y * np.sin(alpha)
     return smooth(np.interp(grid, t - start_s, along), _SLOW_S)

@@ -117,12 +117,12 @@ def _departure(y: FloatArray) -> float:
 
 def _about_their_mean(flights: Iterable[PreparedManeuver]) -> tuple[PreparedManeuver, ...]:
     """Return the manoeuvres with thrust minus drag relative to its mean over all manoeuvres."""
-    found = tuple(flights)
-    if found:
-        mean = float(np.mean(np.concatenate([f.slow[THRUST] for f in found])))
-        for flight in found:
+    prepared = tuple(flights)
+    if prepared:
+        mean = float(np.mean(np.concatenate([f.slow[THRUST] for f in prepared])))
+        for flight in prepared:
             flight.slow[THRUST] -= mean
-    return found
+    return prepared
 
 
 def _with_speed_errors(

@@ -48,10 +48,10 @@ def speed_of_the_motion(maneuvers: Sequence[Maneuver]) -> float | None:
     """
     seen = [_turned_and_pushed(m) for m in maneuvers]
     product, square = 0.0, 0.0
-    for one in seen:
-        if one is None:
+    for parts in seen:
+        if parts is None:
             return None
-        _, turned, pushed = one
+        _, turned, pushed = parts
         product += float(turned @ pushed)
         square += float(pushed @ pushed)
     return square / product if product > 0.0 else None
@@ -81,11 +81,11 @@ def speeds_about(maneuvers: Sequence[Maneuver], level_m_s: float) -> Speeds:
     if len(shown) < 2 or np.min(shown) <= 0.0:
         return unknown
     scatter = float(np.std(shown, ddof=1) / np.mean(shown))
-    known = errors / shown
-    off, std = np.mean(shown) / shown - 1.0, np.maximum(_LARGER * known, _LEAST_STD)
+    relative = errors / shown
+    off, std = np.mean(shown) / shown - 1.0, np.maximum(_LARGER * relative, _LEAST_STD)
     # Gusts spoil what one manoeuvre shows: then it is nearer to what was meant than that.
     weight = _FLOWN**2 / (_FLOWN**2 + std**2)
-    differ = scatter > SIGMAS * float(np.sqrt(np.mean(known**2)))
+    differ = scatter > SIGMAS * float(np.sqrt(np.mean(relative**2)))
     return Speeds(meant * (1.0 + weight * off), level_m_s * np.sqrt(weight) * std, differ)
 
 
@@ -97,11 +97,11 @@ def speed_without_instrument(
     Before the first step the aircraft is trimmed at the steady speed ``level_m_s``: an acceleration there is
     an offset of accelerometers or attitude. The speed is constant where a channel is missing.
     """
-    found = maneuver.channels
+    channels = maneuver.channels
     level = np.full(len(grid), level_m_s)
-    if not all(name in found and len(found[name]) > 10 for name in ("a_x", "a_z", "theta", "alpha")):
+    if not all(name in channels and len(channels[name]) > 10 for name in ("a_x", "a_z", "theta", "alpha")):
         return level
-    rate = speed_rate_at(grid + start_s, found)
+    rate = speed_rate_at(grid + start_s, channels)
     trimmed = grid < maneuver.span.start_s - start_s
     if not np.any(trimmed):
         return level
@@ -113,13 +113,13 @@ def _turned_and_pushed(
 ) -> tuple[FloatArray, FloatArray, FloatArray] | None:
     """Return stamps, and both sides of the integrated equation, the second times V; or None."""
     # Offsets of gyro and accelerometer make a straight line in time, which is removed from both sides.
-    found = maneuver.channels
-    if not all(name in found and len(found[name]) > 10 for name in ("alpha", "q", "a_z", "theta")):
+    channels = maneuver.channels
+    if not all(name in channels and len(channels[name]) > 10 for name in ("alpha", "q", "a_z", "theta")):
         return None
-    t, alpha = found["alpha"].t, found["alpha"].y
-    q, a_z, theta = (np.interp(t, found[name].t, found[name].y) for name in ("q", "a_z", "theta"))
-    a_x = np.interp(t, found["a_x"].t, found["a_x"].y) if "a_x" in found else np.zeros(len(t))
-    force = path_turning(a_x, a_z, theta, alpha, channel_at("bank", t, found))
+    t, alpha = channels["alpha"].t, channels["alpha"].y
+    q, a_z, theta = (np.interp(t, channels[name].t, channels[name].y) for name in ("q", "a_z", "theta"))
+    a_x = np.interp(t, channels["a_x"].t, channels["a_x"].y) if "a_x" in channels else np.zeros(len(t))
+    force = path_turning(a_x, a_z, theta, alpha, channel_at("bank", t, channels))
     if level_m_s is not None:
         force = force * level_m_s / speed_without_instrument(t - t[0], maneuver, float(t[0]), level_m_s)
     line = np.linalg.qr(np.vander(t - t[0], 2))[0]

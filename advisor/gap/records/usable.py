@@ -149,10 +149,10 @@ def condensed(t: FloatArray, y: FloatArray) -> tuple[FloatArray, FloatArray]:
 
 
 def _is_recorded(m: Maneuver) -> bool:
-    found = m.channels
-    if not all(name in found and len(found[name]) >= LEAST_SAMPLES for name in ("elevator", "q")):
+    channels = m.channels
+    if not all(name in channels and len(channels[name]) >= LEAST_SAMPLES for name in ("elevator", "q")):
         return False
-    return len(found["elevator"].cut(*recorded(m))) >= LEAST_SAMPLES and "q" in outputs_of(m)
+    return len(channels["elevator"].cut(*recorded(m))) >= LEAST_SAMPLES and "q" in outputs_of(m)
 
 
 def _departed(m: Maneuver) -> bool:

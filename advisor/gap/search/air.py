@@ -88,25 +88,25 @@ def moving_air(problem: EffectProblem, fitted: EffectFit) -> SoughtAir:
     before = mean_squares(problem, fitted.residuals)
     power = np.mean(before / floor**2, axis=1)
     loudest = np.argsort(-power, kind="stable")[:AIR_MANEUVERS]
-    found = _moving_in(problem, fitted, loudest)
-    if found.gain < CERTAIN and np.max(power) > _STANDS_OUT * np.median(power):
-        found = _moving_in(problem, fitted, loudest[:1])
+    air_fit = _moving_in(problem, fitted, loudest)
+    if air_fit.gain < CERTAIN and np.max(power) > _STANDS_OUT * np.median(power):
+        air_fit = _moving_in(problem, fitted, loudest[:1])
     # A gain that coloured instruments bring alone gives a gust angle of zero, and is no moving air.
-    nothing = SoughtAir(found.gain)
-    if found.gain < CERTAIN or found.gust_angle <= 0.0:
+    nothing = SoughtAir(air_fit.gain)
+    if air_fit.gain < CERTAIN or air_fit.gust_angle <= 0.0:
         return nothing
-    model = with_floor(problem, found.noise)
+    model = with_floor(problem, air_fit.noise)
     instruments = np.hypot(model.white, model.coloured)[[OUTPUTS.index(c) for c in problem.channels]]
-    course = disturbance_courses(problem, fitted, instruments, "air", [found.gust_angle])[0]
+    course = disturbance_courses(problem, fitted, instruments, "air", [air_fit.gust_angle])[0]
     joined = np.concatenate(course.knots)
     typical = robust_std(joined - np.median(joined))
     # Gaussian air of this many samples reaches four times its standard deviation, a lone gust far more.
     highest = float(np.max(np.abs(joined)))
     gust = highest > 6.0 * typical
-    if found.gust_angle < LEAST_GUST_ANGLE and not (gust and highest > NATURAL_GUST_ANGLE):
+    if air_fit.gust_angle < LEAST_GUST_ANGLE and not (gust and highest > NATURAL_GUST_ANGLE):
         return nothing
     if gust:
-        course = _of_a_gust(problem, fitted, instruments, found.gust_angle)
+        course = _of_a_gust(problem, fitted, instruments, air_fit.gust_angle)
     # Without a gust, a course may wander far and change little, or hardly move and explain a slow drift.
     changed = np.mean((before - mean_squares(problem, course.residuals)) / floor**2, axis=1)
     peaks = np.array([np.max(np.abs(knots)) for knots in course.knots])
@@ -114,16 +114,16 @@ def moving_air(problem: EffectProblem, fitted: EffectFit) -> SoughtAir:
     at = int(np.argmax(np.abs(course.knots[number])))
     flight = problem.flights.flights[number]
     air = MovingAir(
-        angle_std=found.gust_angle, gain=found.gain,
+        angle_std=air_fit.gust_angle, gain=air_fit.gain,
         gust=gust, gust_number=flight.number,
         gust_angle=float(course.knots[number][at]), gust_at_s=float(flight.started_s + KNOTS_S * (at + 1)),
         mean_square_beyond_air=_mean_square(problem, course.residuals), residuals=course.residuals,
-        instruments=instruments, steady=0.0 if gust else _steady(problem, fitted, found),
+        instruments=instruments, steady=0.0 if gust else _steady(problem, fitted, air_fit),
     )  # fmt: skip
     return replace(nothing, found=air)
 
 
-def _steady(problem: EffectProblem, fitted: EffectFit, found: Turbulence) -> float:
+def _steady(problem: EffectProblem, fitted: EffectFit, air_fit: Turbulence) -> float:
     """Return the log density of turbulence of equal strength with and without an input, relative to its peak.
 
     Turbulence does not depend on the elevator. A disturbance that the elevator drives ends when the elevator
@@ -138,8 +138,8 @@ def _steady(problem: EffectProblem, fitted: EffectFit, found: Turbulence) -> flo
         sum(float(row.t[-1] - row.t[0]) for row in rows),
         sum(flight.duration_s for flight in problem.flights.flights[:AIR_MANEUVERS]),
     )
-    variance = sum(found.noise.gust_memory_s / (2.0 * max(length, 1e-9)) for length in lengths)
-    excess = np.log(found.gust_angle / max(quiet.gust_angle, LEAST_GUST_ANGLE))
+    variance = sum(air_fit.noise.gust_memory_s / (2.0 * max(length, 1e-9)) for length in lengths)
+    excess = np.log(air_fit.gust_angle / max(quiet.gust_angle, LEAST_GUST_ANGLE))
     return float(-0.5 * max(excess, 0.0) ** 2 / variance)
 
 

@@ -177,7 +177,7 @@ def of_this_flight(flights: PreparedManeuvers, aircraft: Aircraft) -> Aircraft:
     others = replace(aircraft, effects=lasting(aircraft.effects))
     if others == aircraft:
         return aircraft
-    return min((others, aircraft), key=lambda one: _finite_cost(fit_unfiltered(flights, one)[1]))
+    return min((others, aircraft), key=lambda file: _finite_cost(fit_unfiltered(flights, file)[1]))
 
 
 def fit_baseline(flights: PreparedManeuvers, aircraft: Aircraft) -> tuple[EffectProblem, EffectFit]:
@@ -237,6 +237,6 @@ def _filtered(
         assert problem.instruments is not None
         white = replace(problem, whitening=whitening, smallest_noise=0.5 * problem.instruments)
         return white, fit(white, fitted.point, problem.instruments, iterations=8)
-    one = np.ones(len(problem.channels))
-    filtered = replace(problem, whitening=whitening, smallest_noise=0.5 * one)
-    return filtered, fit(filtered, fitted.point, one, iterations=8)
+    ones = np.ones(len(problem.channels))
+    filtered = replace(problem, whitening=whitening, smallest_noise=0.5 * ones)
+    return filtered, fit(filtered, fitted.point, ones, iterations=8)

@@ -116,12 +116,12 @@ class Screen:
                 point = here.point.moved(here.point.shared + length * step, here.point.own)
                 if sides is not None:
                     point = self.around.choose_sides(point, sides)
-                found, most = yield point
-                if found is not None and found.cost < here.cost:
+                there_to, most = yield point
+                if there_to is not None and there_to.cost < here.cost:
                     break
-            if found is None or found.cost >= here.cost:
+            if there_to is None or there_to.cost >= here.cost:
                 break
-            gained, here = here.cost - found.cost, found
+            gained, here = here.cost - there_to.cost, there_to
             if gained < max(0.5, 1e-3 * (self.fitted.cost - here.cost)):
                 break
         return Screened(here.point.effects[-1], here.point, here.cost, here.noise)

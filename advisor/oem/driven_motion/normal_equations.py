@@ -29,9 +29,9 @@ class System(NamedTuple):
         """
         laid, extra = setting.assembly, setting.extra
         common, own = laid.common, laid.own
-        known = (prior.std**-2)[common]
-        information = np.diag(np.concatenate([known, extra.weight**2, np.ones(further)]))
-        towards = known * (prior.mean - setting.shared)[common]
+        stated = (prior.std**-2)[common]
+        information = np.diag(np.concatenate([stated, extra.weight**2, np.ones(further)]))
+        towards = stated * (prior.mean - setting.shared)[common]
         gradient = np.concatenate([towards, extra.weight * extra.pull, np.zeros(further)])
         parts, misfit = [], 0.0
         for rows in laid.blocks:

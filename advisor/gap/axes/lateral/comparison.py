@@ -45,7 +45,7 @@ def compare_side(
         maneuvers=tuple(m.number for m in maneuvers),
     )  # fmt: skip
     seen = model if logged is None else logged
-    estimated = (map(Value, one.theta.tolist(), one.std.tolist()) for one in (model, seen))
+    estimated = (map(Value, e.theta.tolist(), e.std.tolist()) for e in (model, seen))
     values = dict(zip(SIDE_PARAMETERS, map(Value.agreeing, *estimated), strict=True))
     acts = diagnosis.verdict in ("effect", "unknown")
     if diagnosis.verdict == "effect":

@@ -98,7 +98,7 @@ def where_of(evidence: Sequence[AlternativeEvidence], causes: Sequence[Cause]) -
     causes
         Effects of the answer, the first of them decisive; empty for an answer without an effect.
     """
-    each = {a.block: one.probability for one in evidence if (a := one.alternative).kind == "unknown"}
+    each = {a.block: e.probability for e in evidence if (a := e.alternative).kind == "unknown"}
     without = sum(each.values())
     shares = {block: p / without for block, p in each.items() if without > 0.0}
     if causes:
@@ -131,10 +131,10 @@ def _first(case: Case) -> Fit | None:
 
     An effect that distorts the derivatives of the flight leads the first search into a local minimum.
     """
-    known = case.prior_of(ERROR_IF_WRONG, case.natural)
+    prior = case.prior_of(ERROR_IF_WRONG, case.natural)
     starts = (case.begin, case.begin._replace(theta=case.theta))
     fits = [fit for fit in (case.fit(at, case.natural) for at in starts) if fit is not None]
-    return max(fits, key=known.height, default=None)
+    return max(fits, key=prior.height, default=None)
 
 
 def _held_out(case: Case, model: SideModel, heat: float) -> FloatArray:
@@ -143,26 +143,26 @@ def _held_out(case: Case, model: SideModel, heat: float) -> FloatArray:
     A manoeuvre that alone moves a control is not held out, because no other manoeuvre shows the control's
     derivatives. Its sums are NaN.
     """
-    known = case.prior_of(model.tolerance, model.fit.free)
-    found = squares_of(model.fit, information_of(model.fit, heat**-0.5), known).held_out
-    found[~case.flown.foretold] = np.nan
-    return found
+    prior = case.prior_of(model.tolerance, model.fit.free)
+    squares = squares_of(model.fit, information_of(model.fit, heat**-0.5), prior).held_out
+    squares[~case.flown.foretold] = np.nan
+    return squares
 
 
-def _capped(case: Case, found: Decided[SideModel], as_given: Fit) -> Decided[SideModel]:
+def _capped(case: Case, decided: Decided[SideModel], as_given: Fit) -> Decided[SideModel]:
     """Return the posterior in which "no gap" is unlikely in the presence of a visible gap.
 
     Without a manoeuvre that can be held out, the posterior is unchanged.
     """
-    plain, last = found.chosen[0], found.chosen[-1].fit
+    plain, last = decided.chosen[0], decided.chosen[-1].fit
     gap, _ = measured(
-        last, case.numbers, sums(last, as_given.residual**2), _held_out(case, plain, found.heat)
+        last, case.numbers, sums(last, as_given.residual**2), _held_out(case, plain, decided.heat)
     )
     if np.isnan(gap.after):
-        return found
-    first = capped(found.posteriors[0], gap.before, gap.after if case.stated else gap.before)
-    named = found.chosen if any(one.alternative == first.answer for one in found.chosen) else (plain,)
-    return replace(found, posteriors=(first, *found.posteriors[1:]), chosen=named)
+        return decided
+    first = capped(decided.posteriors[0], gap.before, gap.after if case.stated else gap.before)
+    named = decided.chosen if any(model.alternative == first.answer for model in decided.chosen) else (plain,)
+    return replace(decided, posteriors=(first, *decided.posteriors[1:]), chosen=named)
 
 
 def _named_air(row: Row[SideModel]) -> Row[SideModel]:
@@ -188,30 +188,30 @@ class _Told(NamedTuple):
         return cls(fit, *posterior_at(fit, case.prior_of(model.tolerance, fit.free), share))
 
 
-def _causes(case: Case, found: Decided[SideModel], final: _Told, as_given: Fit) -> Iterator[Cause]:
+def _causes(case: Case, decided: Decided[SideModel], final: _Told, as_given: Fit) -> Iterator[Cause]:
     """Yield the effects of the model, then the alternatives to the first effect."""
-    posterior, together, added = found.posteriors[0], 1.0, found.chosen[1:]
-    for stage, one in zip(found.posteriors, added, strict=False):
-        assert one.alternative is not None
-        together *= stage.of(one.alternative)
-        yield _cause(case, one, final, together, present=True)
-    taken = {one.alternative for one in added}
+    posterior, together, added = decided.posteriors[0], 1.0, decided.chosen[1:]
+    for stage, model in zip(decided.posteriors, added, strict=False):
+        assert model.alternative is not None
+        together *= stage.of(model.alternative)
+        yield _cause(case, model, final, together, present=True)
+    taken = {model.alternative for model in added}
     others = {a: p for a, p in posterior.by_alternative.items() if a.is_effect and a not in taken}
     for alternative, probability in others.items():
         other = posterior.explanation_of(alternative)
         if alternative == SIDE_GUSTS:
             yield _air(case, other, probability, posterior.answer == SIDE_GUSTS, as_given)
             continue
-        yield _cause(case, other, _Told.of(case, other, found.heat**-0.5), probability, present=False)
+        yield _cause(case, other, _Told.of(case, other, decided.heat**-0.5), probability, present=False)
 
 
-def _cause(case: Case, tried: SideModel, told: _Told, probability: float, present: bool) -> Cause:
+def _cause(case: Case, tried: SideModel, final: _Told, probability: float, present: bool) -> Cause:
     """Return an effect as a cause, with its sizes from a posterior that includes the effect."""
     effect = tried.effect
     assert effect is not None
-    variant, places = effect.variant, [one.place for one in told.fit.free]
+    variant, places = effect.variant, [f.place for f in final.fit.free]
     at = [N + places.index(place) for place in effect.places]
-    sizes = zip(variant.names, told.mean[at] - base_of(case, effect), told.std[at], strict=True)
+    sizes = zip(variant.names, final.mean[at] - base_of(case, effect), final.std[at], strict=True)
     parameters = {name: Value(float(size), float(error)) for name, size, error in sizes}
     if variant.inverted:
         name = variant.names[0]
@@ -219,28 +219,28 @@ def _cause(case: Case, tried: SideModel, told: _Told, probability: float, presen
         parameters[name] = Value(1.0 / inverse, error / inverse**2)
     cause = Cause(
         variant.effect, variant.block, probability, parameters, (), "", np.nan, present,
-        effect.of, effect.named, gain=tried.gain, peaks=peaks_of(told.fit),
+        effect.of, effect.named, gain=tried.gain, peaks=peaks_of(final.fit),
     )  # fmt: skip
     return replace(cause, sentence=effect.said(what(cause)))
 
 
-def _air(case: Case, one: SideModel, probability: float, is_found: bool, as_given: Fit) -> Cause:
+def _air(case: Case, model: SideModel, probability: float, is_found: bool, as_given: Fit) -> Cause:
     """Return side gusts as a cause of the gap."""
-    assert one.gusts is not None
+    assert model.gusts is not None
     speed = float(np.mean([np.mean(record.airspeed.y) for record in case.flown.problem.records]))
-    size = Value(one.gusts.air.angle * speed, one.gusts.angle_std * speed)
+    size = Value(model.gusts.air.angle * speed, model.gusts.angle_std * speed)
     said = f"The air was not still: side gusts of about {size.value:.2g} m/s"
-    gain = Value(one.gusts.likelihood - coloured_likelihood(one.fit), 0.0)
+    gain = Value(model.gusts.likelihood - coloured_likelihood(model.fit), 0.0)
     return Cause(
         "turbulence", "air", probability, {"sigma_v_m_s": size}, (), "", np.nan, is_found,
         "air", AIR, said, gain, peaks_of(as_given),
     )  # fmt: skip
 
 
-def _waterfall(case: Case, found: Decided[SideModel]) -> tuple[tuple[str, float], ...]:
+def _waterfall(case: Case, decided: Decided[SideModel]) -> tuple[tuple[str, float], ...]:
     """Return the gap that remains after the addition of each effect, if a manoeuvre can be held out."""
-    each = [(one.name, _held_out(case, one, found.heat)) for one in found.chosen[1:]]
-    left = ((name, measured(found.chosen[-1].fit, case.numbers, one, one)[0].after) for name, one in each)
+    each = [(m.name, _held_out(case, m, decided.heat)) for m in decided.chosen[1:]]
+    left = ((name, measured(decided.chosen[-1].fit, case.numbers, m, m)[0].after) for name, m in each)
     return tuple((name, gap) for name, gap in left if np.isfinite(gap))
 
 

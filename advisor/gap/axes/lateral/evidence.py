@@ -52,27 +52,27 @@ def colour_share(fit: Fit, lacking: bool = False) -> float:
     return share_of(errors["covariance_cr"], scattered + errors["systematic"])
 
 
-def posterior_at(fit: Fit, known: Known, share: float) -> tuple[FloatArray, FloatArray]:
+def posterior_at(fit: Fit, prior: Known, share: float) -> tuple[FloatArray, FloatArray]:
     """Return the mean (15 + k,) and the standard errors of derivatives and effect parameters.
 
     Like the errors of an estimate, these errors contain the scatter between the manoeuvres and the dynamics
     that the model lacks.
     """
-    mean = fit.values + step_of(fit, information_of(fit, share), known)
-    weight, off = known.precision[N:] ** 0.5, (known.mean - fit.values)[N:]
+    mean = fit.values + step_of(fit, information_of(fit, share), prior)
+    weight, off = prior.precision[N:] ** 0.5, (prior.mean - fit.values)[N:]
     extra = Extra(fit.slopes, weight, weight * off, np.full(len(weight), share))
-    precision, about = known.precision[:N] / share**2, (fit.residual, fit.sensitivities, fit.noise)
-    found = errors_of(fit.assembly, *about, extra, precision, fitted=fit.fitted, prior_share=share)
-    if found is None:
-        return mean, known.precision**-0.5
-    scattered = widened_by_scatter(found["covariance"], found["contributions"])
-    return mean, np.diag(scattered + found["systematic"]) ** 0.5
+    precision, about = prior.precision[:N] / share**2, (fit.residual, fit.sensitivities, fit.noise)
+    errors = errors_of(fit.assembly, *about, extra, precision, fitted=fit.fitted, prior_share=share)
+    if errors is None:
+        return mean, prior.precision**-0.5
+    scattered = widened_by_scatter(errors["covariance"], errors["contributions"])
+    return mean, np.diag(scattered + errors["systematic"]) ** 0.5
 
 
-def step_of(fit: Fit, information: Information, known: Known) -> FloatArray:
+def step_of(fit: Fit, information: Information, prior: Known) -> FloatArray:
     """Return the step (15 + k,) from the fit to the posterior mean."""
-    pull = np.sum(information.gradient, axis=0) - known.precision * (fit.values - known.mean)
-    return np.linalg.solve(np.sum(information.matrix, axis=0) + np.diag(known.precision), pull)
+    pull = np.sum(information.gradient, axis=0) - prior.precision * (fit.values - prior.mean)
+    return np.linalg.solve(np.sum(information.matrix, axis=0) + np.diag(prior.precision), pull)
 
 
 class Squares(NamedTuple):
@@ -85,13 +85,13 @@ class Squares(NamedTuple):
     the predicted manoeuvre itself."""
 
 
-def squares_of(fit: Fit, information: Information, known: Known) -> Squares:
+def squares_of(fit: Fit, information: Information, prior: Known) -> Squares:
     """Return the sums of squares of a model in the fit, and on manoeuvres held out one by one."""
     matrix, gradient = np.sum(information.matrix, axis=0), np.sum(information.gradient, axis=0)
     squares = np.zeros((2, fit.assembly.maneuvers, len(fit.noise)))
     for m, without in np.ndindex(fit.assembly.maneuvers, 2):
-        posterior = matrix - without * information.matrix[m] + np.diag(known.precision)
-        pull = gradient - without * information.gradient[m] - known.precision * (fit.values - known.mean)
+        posterior = matrix - without * information.matrix[m] + np.diag(prior.precision)
+        pull = gradient - without * information.gradient[m] - prior.precision * (fit.values - prior.mean)
         rows = fit.assembly.owner == m
         left = fit.residual[rows] - fit.columns[rows] @ np.linalg.solve(posterior, pull)
         squares[without, m] = np.bincount(fit.assembly.channel[rows], left**2, len(fit.noise))
@@ -108,8 +108,8 @@ def gained(before: FloatArray, after: FloatArray, counts: FloatArray, share: flo
     before, after
         Shape (m, outputs): sums of squared errors of both models.
     """
-    told = counts > 0.0
-    sums = before[:, told].sum(axis=0), after[:, told].sum(axis=0)
-    total = 0.5 * share**2 * float(np.sum(counts[told] * np.log(sums[0] / sums[1])))
-    each = 0.5 * share**2 * np.sum((before - after)[:, told] * counts[told] / sums[1], axis=1)
+    seen = counts > 0.0
+    sums = before[:, seen].sum(axis=0), after[:, seen].sum(axis=0)
+    total = 0.5 * share**2 * float(np.sum(counts[seen] * np.log(sums[0] / sums[1])))
+    each = 0.5 * share**2 * np.sum((before - after)[:, seen] * counts[seen] / sums[1], axis=1)
     return Value(total, float(np.sqrt(len(each)) * np.std(each, ddof=1)) if len(each) > 1 else np.inf)

@@ -127,12 +127,12 @@ class Fit:
     @property
     def values(self) -> FloatArray:
         """Shape (15 + k,): values of the derivatives and of the effect parameters."""
-        return np.array([*self.point.theta, *(one.within(self.point.setting) for one in self.free)])
+        return np.array([*self.point.theta, *(f.within(self.point.setting) for f in self.free)])
 
     @property
     def bounds(self) -> tuple[FloatArray, FloatArray]:
         """Lowest and highest values, (15 + k,) each."""
-        low, high = np.array([(-np.inf, np.inf)] * N + [one.bounds for one in self.free]).T
+        low, high = np.array([(-np.inf, np.inf)] * N + [f.bounds for f in self.free]).T
         return low, high
 
     @property
@@ -150,15 +150,17 @@ class Fit:
         return Linear(flown.problem, self.assembly, self.point.theta, self.sensitivities, self.noise)
 
 
-def fitted(flown: Flown, begin: Point, free: Sequence[Free], known: Known, most: int = MOST) -> Fit | None:
+def fitted(
+    flown: Flown, begin: Point, free: Sequence[Free], prior_known: Known, most: int = MOST
+) -> Fit | None:
     """Return the optimum from a start; None if the simulation diverges."""
-    std = known.precision**-0.5
-    widths = [one._replace(std=width) for one, width in zip(free, std[N:].tolist(), strict=True)]
-    prior, place = Priors(known.mean[:N], std[:N]), (begin.theta, begin.local)
-    found = descended(_MOTION, Flying(flown, begin.setting), widths, prior, place, most, SETTLED)
-    if isinstance(found, NoEstimate):
+    std = prior_known.precision**-0.5
+    widths = [f._replace(std=width) for f, width in zip(free, std[N:].tolist(), strict=True)]
+    prior, place = Priors(prior_known.mean[:N], std[:N]), (begin.theta, begin.local)
+    descent = descended(_MOTION, Flying(flown, begin.setting), widths, prior, place, most, SETTLED)
+    if isinstance(descent, NoEstimate):
         return None
-    return _as_fit(Point(*found.place, found.problem.setting), found.assembly, found.response, free)
+    return _as_fit(Point(*descent.place, descent.problem.setting), descent.assembly, descent.response, free)
 
 
 def moved_by(flown: Flown, fit: Fit, change: FloatArray) -> Fit | None:
@@ -172,11 +174,11 @@ def moved_by(flown: Flown, fit: Fit, change: FloatArray) -> Fit | None:
     for m, rows in enumerate(fit.assembly.blocks):
         mine = fit.sensitivities[rows][:, own] * fit.weight[rows, None]
         local[m, own - N] += np.linalg.lstsq(mine, left[rows], rcond=None)[0]
-    places = [one.place for one in fit.free]
+    places = [f.place for f in fit.free]
     setting = moved_to(fit.point.setting, places, (fit.values + change)[N:])
     point, assembly = Point(fit.point.theta + change[:N], local, setting), laid_out(flown, setting)
-    found = _Motion.respond(Flying(flown, setting), assembly, point.theta, local, fit.free)
-    return None if found is None else _as_fit(point, assembly, found, fit.free)
+    response = _Motion.respond(Flying(flown, setting), assembly, point.theta, local, fit.free)
+    return None if response is None else _as_fit(point, assembly, response, fit.free)
 
 
 class _Motion:
@@ -195,10 +197,10 @@ class _Motion:
         problem: Flying, laid: LateralAssembly, theta: FloatArray, local: FloatArray, free: Sequence[Free], /
     ) -> Response | None:
         """Return the response of the model; None if the simulation diverges."""
-        found = simulate(laid, theta, local)
-        if found is None:
+        simulated = simulate(laid, theta, local)
+        if simulated is None:
             return None
-        y, g, motion = found
+        y, g, motion = simulated
         y += _added(problem, free)
         columns = partial(_slopes, problem, theta, local, free, y)
         return Response(y, g[:, :ALL], columns, motion[laid.grid.first[:-1], 1])
@@ -209,26 +211,24 @@ _MOTION = _Motion()
 
 def _added(problem: Flying, free: Sequence[Free]) -> FloatArray:
     """Return the outputs' change (N,) by parameters with a known column; zero without such a parameter."""
-    return np.asarray(
-        sum(one.read(problem) * one.column for one in free if one.adds and one.column is not None)
-    )
+    return np.asarray(sum(f.read(problem) * f.column for f in free if f.adds and f.column is not None))
 
 
 def _slopes(
     problem: Flying, theta: FloatArray, local: FloatArray, free: Sequence[Free], y: FloatArray
 ) -> FloatArray:
     """Return the derivatives (N, k) of the outputs ``y`` (N,) by the effect parameters, by differences."""
-    found = np.zeros((len(y), len(free)))
+    slopes = np.zeros((len(y), len(free)))
     added = _added(problem, free)
-    for k, one in enumerate(free):
-        if one.column is not None:
-            found[:, k] = one.column
+    for k, f in enumerate(free):
+        if f.column is not None:
+            slopes[:, k] = f.column
             continue
-        value = one.read(problem)
-        step = one.step if value + one.step <= one.bounds[1] else -one.step
-        setting = moved_to(problem.setting, [one.place], np.array([value + step]))
-        found[:, k] = (outputs(problem.flown, Point(theta, local, setting)) + added - y) / step
-    return found
+        value = f.read(problem)
+        step = f.step if value + f.step <= f.bounds[1] else -f.step
+        setting = moved_to(problem.setting, [f.place], np.array([value + step]))
+        slopes[:, k] = (outputs(problem.flown, Point(theta, local, setting)) + added - y) / step
+    return slopes
 
 
 def _as_fit(point: Point, assembly: LateralAssembly, response: Response, free: Sequence[Free]) -> Fit:

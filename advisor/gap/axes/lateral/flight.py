@@ -90,31 +90,29 @@ class SideFlight:
         begin = self.plain
         if base is not None:
             # With an effect, another lateness of commands and outputs changes the outputs by something else.
-            begin = replace(base.fit, free=tuple(one._replace(column=None) for one in base.fit.free))
+            begin = replace(base.fit, free=tuple(s._replace(column=None) for s in base.fit.free))
         share = colour_share(begin)
         plain = begin if base is None else self.case.fit(begin.point, begin.free, share=share) or base.fit
         table = _beside(base, self.table)
         starts = Starts(self.case, plain, table)
         of_laws = Starts(self.case, plain, _beside(base, self.laws)).of_each
-        chosen = [(one, plain, ERROR_IF_WRONG) for one in likeliest(starts.of_each, most)]
-        chosen += [(one, plain, ERROR_IF_WRONG) for one in likeliest(of_laws, LAWS)]
+        chosen = [(s, plain, ERROR_IF_WRONG) for s in likeliest(starts.of_each, most)]
+        chosen += [(s, plain, ERROR_IF_WRONG) for s in likeliest(of_laws, LAWS)]
         near = self._at_the_file(plain, share, base) if self.is_stated else None
         if near is not None:
-            others = [effect for effect in table if effect.name not in {one.name for one, *_ in chosen}]
+            others = [effect for effect in table if effect.name not in {s.name for s, *_ in chosen}]
             tight = Starts(self.case, near, others, ERROR_IF_RIGHT).of_each
-            chosen += [(one, near, ERROR_IF_RIGHT) for one in likeliest(tight, AT_THE_FILE)]
+            chosen += [(s, near, ERROR_IF_RIGHT) for s in likeliest(tight, AT_THE_FILE)]
         everyone = [replace(self._model(None, plain, plain, share), starts=starts)]
-        models = (self._added(one, at, tolerance, plain, share) for one, at, tolerance in chosen)
+        models = (self._added(s, at, tolerance, plain, share) for s, at, tolerance in chosen)
         everyone += filter(None, models)
         again = self._searched_again(everyone, share) if base is None else None
         if again is not None:
             # The plain model had ended in a local minimum, and so had all models that began there.
             return replace(self, plain=again).explained(base, most)
         # What the likeliest model still lacks is an error of every model.
-        share = colour_share(max(everyone, key=lambda one: one.likelihood).fit, lacking=True)
-        weighed = (
-            replace(self._model(one.effect, one.fit, plain, share), starts=one.starts) for one in everyone
-        )
+        share = colour_share(max(everyone, key=lambda s: s.likelihood).fit, lacking=True)
+        weighed = (replace(self._model(s.effect, s.fit, plain, share), starts=s.starts) for s in everyone)
         return share**-2, list(weighed)
 
     def _at_the_file(self, plain: Fit, share: float, base: SideModel | None) -> Fit | None:
@@ -130,43 +128,43 @@ class SideFlight:
         is no better optimum.
         """
         plain, *added = everyone
-        best = max(added, key=lambda one: one.likelihood, default=None)
+        best = max(added, key=lambda m: m.likelihood, default=None)
         if best is None or best.effect is None:
             return None
         setting = moved_to(best.fit.point.setting, best.effect.places, base_of(self.case, best.effect))
         fit = self.case.fit(best.fit.point._replace(setting=setting), self.case.natural, share=share)
-        known = self.case.prior_of(ERROR_IF_WRONG, self.case.natural, share)
-        better = fit is not None and known.height(fit) > known.height(plain.fit) + SAME_OPTIMUM
+        prior = self.case.prior_of(ERROR_IF_WRONG, self.case.natural, share)
+        better = fit is not None and prior.height(fit) > prior.height(plain.fit) + SAME_OPTIMUM
         return fit if better else None
 
-    def _added(self, one: Start, at: Fit, tolerance: float, plain: Fit, share: float) -> SideModel | None:
+    def _added(self, start: Start, at: Fit, tolerance: float, plain: Fit, share: float) -> SideModel | None:
         """Return the model with an effect; None if the model diverges or a fault ends the fit."""
 
         def work() -> SideModel | None:
-            fit = self.case.fit(one.point, free_with(self.case, one.effect, at), tolerance, share)
-            return None if fit is None else self._model(one.effect, fit, plain, share)
+            fit = self.case.fit(start.point, free_with(self.case, start.effect, at), tolerance, share)
+            return None if fit is None else self._model(start.effect, fit, plain, share)
 
-        return self.parts.kept(f"roll and yaw, effect {one.name}", work)
+        return self.parts.kept(f"roll and yaw, effect {start.name}", work)
 
-    def at_the_files(self, one: SideModel, plain: SideModel, heat: float) -> SideModel | None:
+    def at_the_files(self, model: SideModel, plain: SideModel, heat: float) -> SideModel | None:
         """Return an explanation refitted about the file's derivatives; None without such a fit.
 
         If the file's derivatives are likelier already, the first fit suffices for the quadratic expansion.
         """
-        share, near = heat**-0.5, one.evidence.right > one.evidence.wrong
-        free = one.fit.free if one.effect is not None else free_near(self.case, one.fit)
-        made = None if near else self.case.fit(one.fit.point, free, ERROR_IF_RIGHT, share)
+        share, near = heat**-0.5, model.evidence.right > model.evidence.wrong
+        free = model.fit.free if model.effect is not None else free_near(self.case, model.fit)
+        made = None if near else self.case.fit(model.fit.point, free, ERROR_IF_RIGHT, share)
         if made is None:
             return None
-        return replace(self._model(one.effect, made, plain.fit, share), starts=one.starts)
+        return replace(self._model(model.effect, made, plain.fit, share), starts=model.starts)
 
-    def apart(self, one: SideModel, other: SideModel) -> float:
+    def apart(self, model: SideModel, other: SideModel) -> float:
         """Return the largest difference between two models' outputs, as a share of the outputs' peaks."""
-        return change_of(one.fit, other.fit)
+        return change_of(model.fit, other.fit)
 
-    def residual(self, one: SideModel, heat: float) -> Residual:
+    def residual(self, model: SideModel, heat: float) -> Residual:
         """Return the disturbance that explains the residual of a model best."""
-        return residual_of(one.fit, self.case.flown, heat**-0.5)
+        return residual_of(model.fit, self.case.flown, heat**-0.5)
 
     def pairs(self, stage: Stage[SideModel], leads: Sequence[SideModel]) -> Pairs:
         """Yield the price of each pair of effects and both names, if the second effect may be a cause as
@@ -203,45 +201,45 @@ class SideFlight:
         likeliest explanation, because an effect without its model resembles a coloured instrument.
         """
         each = float(np.log(max(len(self.table), 1)))
-        told = [stage.plain.evidence.right, *(one.evidence.either - each for one in stage.effects)]
-        least = np.logaddexp.reduce(told) + np.log(LIKELY)
-        likely = [one for one, nats in zip(stage.effects, told[1:], strict=True) if nats > least]
+        nats_of = [stage.plain.evidence.right, *(m.evidence.either - each for m in stage.effects)]
+        least = np.logaddexp.reduce(nats_of) + np.log(LIKELY)
+        likely = [m for m, nats in zip(stage.effects, nats_of[1:], strict=True) if nats > least]
         still = [stage.plain, *likely]
-        lead = int(np.argmax([one.evidence.either for one in still]))
+        lead = int(np.argmax([m.evidence.either for m in still]))
         fit = still[lead].fit
         courses = courses_of(fit.linear(self.case.flown))
         air = side_gusts(fit, courses, self._wide(fit))
-        blown = within_model_error(self, [self._blown(one, courses, air) for one in still], 0.0)
+        blown = within_model_error(self, [self._blown(m, courses, air) for m in still], 0.0)
         gain = air.likelihood - coloured_likelihood(fit)
         over = still[lead].evidence.either + gain - blown[lead].evidence.either
-        first, *others = (replace(one.more(over), likelihood=one.likelihood + over) for one in blown)
+        first, *others = (replace(m.more(over), likelihood=m.likelihood + over) for m in blown)
         return Stage(first, tuple(others), (), stage.heat)
 
     def _wide(self, fit: Fit) -> Known:
         return self.case.prior_of(ERROR_IF_WRONG, fit.free)
 
-    def _blown(self, one: SideModel, courses: Sequence[Course], air: Gusts) -> SideModel:
+    def _blown(self, model: SideModel, courses: Sequence[Course], air: Gusts) -> SideModel:
         """Return an explanation with side gusts in addition, at its optimum in these gusts.
 
         A fit in white noise has absorbed part of the gusts in the derivatives, and lies far from the optimum
         in gusts.
         """
-        wide = self._wide(one.fit)
-        gusts = side_gusts(one.fit, courses, wide, air)
+        wide = self._wide(model.fit)
+        gusts = side_gusts(model.fit, courses, wide, air)
         for _ in range(_STEPS):
-            change = gusts.change(wide, one.fit)
-            fits = (moved_by(self.case.flown, one.fit, share * change) for share in (1.0, 0.25))
+            change = gusts.change(wide, model.fit)
+            fits = (moved_by(self.case.flown, model.fit, share * change) for share in (1.0, 0.25))
             ahead = ((fit, gusts.at(fit, courses)) for fit in fits if fit is not None)
-            height = gusts.height(wide, one.fit)
+            height = gusts.height(wide, model.fit)
             fit, gusts = next(((f, g) for f, g in ahead if g.height(wide, f) > height), (None, gusts))
             if fit is None:
                 break
-            one = replace(one, fit=fit)
+            model = replace(model, fit=fit)
         # At the optimum the gradient balances the prior's. Delays have kinks, where no step leads further.
-        gradient = wide.precision * (one.fit.values - wide.mean)
-        evidence, natural = self._weighed(one.fit, one.effect, gusts.likelihood, gusts.matrix, gradient)
-        blown = replace(one, gusts=gusts, evidence=evidence, natural=natural, likelihood=gusts.likelihood)
-        return replace(blown.more(one.beyond), model_error=0.0)
+        gradient = wide.precision * (model.fit.values - wide.mean)
+        evidence, natural = self._weighed(model.fit, model.effect, gusts.likelihood, gusts.matrix, gradient)
+        blown = replace(model, gusts=gusts, evidence=evidence, natural=natural, likelihood=gusts.likelihood)
+        return replace(blown.more(model.beyond), model_error=0.0)
 
     def _weighed(
         self, fit: Fit, effect: SideEffect | None, likelihood: float, matrix: FloatArray, gradient: FloatArray
@@ -254,11 +252,11 @@ class SideFlight:
 
     def _model(self, effect: SideEffect | None, fit: Fit, plain: Fit, share: float) -> SideModel:
         """Return a model with its evidence, which a loss on held-out manoeuvres may reduce."""
-        told, likelihood = information_of(fit, share), share**2 * fit.likelihood
-        matrix, gradient = (np.sum(part, axis=0) for part in told)
+        information, likelihood = information_of(fit, share), share**2 * fit.likelihood
+        matrix, gradient = (np.sum(part, axis=0) for part in information)
         evidence, natural = self._weighed(fit, effect, likelihood, matrix, gradient)
         # A search that ends early, as at a bound, leaves a step to the optimum, which the evidence has taken.
-        step = step_of(fit, told, self._wide(fit))
+        step = step_of(fit, information, self._wide(fit))
         likelihood += float(gradient @ step - 0.5 * step @ matrix @ step)
         model = SideModel(
             alternative=None, effect=effect, fit=fit, evidence=evidence, natural=natural,
@@ -271,7 +269,7 @@ class SideFlight:
         if effect.sides is not None:
             extra -= len(self.case.flown) * np.log(len(effect.sides[1]))
         was = squares_of(plain, information_of(plain, share), self._wide(plain))
-        now = squares_of(fit, told, self.case.prior_of(model.tolerance, fit.free))
+        now = squares_of(fit, information, self.case.prior_of(model.tolerance, fit.free))
         # A manoeuvre that alone moves a control is predicted by the prior, which says nothing of an effect.
         kept = self.case.flown.foretold
         counts = sums(fit, np.ones(len(fit.residual)))[kept].sum(axis=0)
@@ -294,14 +292,14 @@ def _beside(base: SideModel | None, table: Sequence[SideEffect]) -> list[SideEff
 def _narrowed(free: Sequence[Free], effect: SideEffect | None) -> list[Free]:
     """Return the free parameters, with the effect's prior narrowed to the size natural to every aircraft."""
     shares = {} if effect is None else dict(zip(effect.places, natural_shares(effect.variant), strict=True))
-    return [one._replace(std=shares.get(one.place, 1.0) * one.std) for one in free]
+    return [f._replace(std=shares.get(f.place, 1.0) * f.std) for f in free]
 
 
-def change_of(one: Fit, other: Fit) -> float:
+def change_of(fit: Fit, other: Fit) -> float:
     """Return the largest difference between the outputs of two fits, as a share of each output's peak."""
     shares = []
-    for channel in np.unique(one.assembly.channel):
-        rows = one.assembly.channel == channel
-        apart = one.fitted[rows] - other.fitted[rows]
-        shares.append(np.sqrt(np.mean(apart**2)) / max(float(np.ptp(one.assembly.z[rows])) / 2.0, 1e-12))
+    for channel in np.unique(fit.assembly.channel):
+        rows = fit.assembly.channel == channel
+        apart = fit.fitted[rows] - other.fitted[rows]
+        shares.append(np.sqrt(np.mean(apart**2)) / max(float(np.ptp(fit.assembly.z[rows])) / 2.0, 1e-12))
     return float(max(shares))

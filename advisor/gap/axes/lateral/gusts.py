@@ -31,16 +31,16 @@ class Gusts:
     gradient: FloatArray
     """Shape (k,): gradient of the log likelihood at the fit."""
 
-    def change(self, known: Known, fit: Fit) -> FloatArray:
+    def change(self, prior: Known, fit: Fit) -> FloatArray:
         """Return the change (k,) from the fit to the optimum with gusts and prior, within the bounds."""
         low, high = fit.bounds
-        pull = self.gradient + known.precision * (known.mean - fit.values)
-        whole = self.matrix + np.diag(known.precision)
+        pull = self.gradient + prior.precision * (prior.mean - fit.values)
+        whole = self.matrix + np.diag(prior.precision)
         return solved_within(whole, pull, low - fit.values, high - fit.values)
 
-    def height(self, known: Known, fit: Fit) -> float:
+    def height(self, prior: Known, fit: Fit) -> float:
         """Return the log posterior density of the fit with these gusts, up to a constant."""
-        return self.likelihood - 0.5 * float(known.precision @ (fit.values - known.mean) ** 2)
+        return self.likelihood - 0.5 * float(prior.precision @ (fit.values - prior.mean) ** 2)
 
     def at(self, fit: Fit, courses: Sequence[Course]) -> "Gusts":
         """Return gusts with unchanged statistics, with the likelihood and its slopes at another fit."""
@@ -49,7 +49,7 @@ class Gusts:
         return replace(self, likelihood=likelihood, matrix=inner[1:, 1:], gradient=inner[1:, 0])
 
 
-def side_gusts(fit: Fit, courses: Sequence[Course], known: Known, near: Gusts | None = None) -> Gusts:
+def side_gusts(fit: Fit, courses: Sequence[Course], values_prior: Known, near: Gusts | None = None) -> Gusts:
     """Return the likeliest white noise and gusts in the residuals of a fit.
 
     Derivatives and effect parameters are integrated out, because a white-noise fit has absorbed part of the
@@ -57,12 +57,12 @@ def side_gusts(fit: Fit, courses: Sequence[Course], known: Known, near: Gusts | 
 
     Parameters
     ----------
-    known
+    values_prior
         Prior of derivatives and effect parameters.
     near
         Gusts of a similar fit, at which the search begins.
     """
-    sums, prior = _sums(fit, courses), Integrated(*known.prior(fit.values))
+    sums, prior = _sums(fit, courses), Integrated(*values_prior.prior(fit.values))
     air = likeliest(sums, fit.noise, prior, None if near is None else near.air)
     return Gusts(air, air.angle_std(sums, prior), np.nan, *np.empty((2, 0, 0))).at(fit, courses)
 

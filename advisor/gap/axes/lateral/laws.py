@@ -92,9 +92,9 @@ def _motion(fit: Fit, m: int) -> Mapping[str, FloatArray]:
     course = np.empty((len(grid.step_s), 2, len(LATERAL.states)))
     nothing = np.empty((0, fit.sensitivities.shape[1]))
     respond_axis(grid, fit.point.theta, fit.point.local, np.empty(len(assembly.z)), nothing, course)
-    told = dict(zip(LATERAL.states, course[events, 0].T, strict=True))
-    told |= {of: grid.inputs[events, k] - grid.inputs[events][0, k] for k, of in enumerate(LATERAL.inputs)}
-    moved = {name: np.interp(t, stamps, y) for name, y in told.items()}
+    moves = dict(zip(LATERAL.states, course[events, 0].T, strict=True))
+    moves |= {of: grid.inputs[events, k] - grid.inputs[events][0, k] for k, of in enumerate(LATERAL.inputs)}
+    moved = {name: np.interp(t, stamps, y) for name, y in moves.items()}
     for output, rows in assembly.rows[m].items():
         moved[block_of(output)] = np.interp(t, assembly.t[rows], fit.fitted[rows])
     return {**moved, "t": t}

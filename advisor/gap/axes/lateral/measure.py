@@ -36,12 +36,12 @@ def measured(
     counts = sums(fit, np.ones(len(fit.residual)))
     kept = np.flatnonzero(~np.isnan(after).all(axis=1))
     kept = kept if len(kept) else np.arange(len(after))
-    told = np.flatnonzero(counts[kept].sum(axis=0))
-    floor, counts, squares = fit.noise[told], counts[:, told], (before[:, told], after[:, told])
+    seen = np.flatnonzero(counts[kept].sum(axis=0))
+    floor, counts, squares = fit.noise[seen], counts[:, seen], (before[:, seen], after[:, seen])
     whole = [x[kept].sum(axis=0) / counts[kept].sum(axis=0) for x in squares]
     with np.errstate(invalid="ignore"):  # a manoeuvre may lack an output
         was, now = (x / counts for x in squares)
-    names = [LATERAL.outputs[k] for k in told]
+    names = [LATERAL.outputs[k] for k in seen]
     gap = gap_between(names, numbers, floor, _FLOOR_NOTE, (whole[0], was), (whole[1], now))
     if not gap.before > 0.0 or np.isnan(gap.after):
         return gap, None

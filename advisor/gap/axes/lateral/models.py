@@ -60,9 +60,9 @@ class Case:
         sizes = natural_size(self.theta)
         size = np.array([sizes[name] for name in SIDE_PARAMETERS])
         scale = np.maximum(np.abs(self.theta), SMALL_SHARE * size)
-        told = np.array([name in self.stated for name in SIDE_PARAMETERS])
-        std = np.concatenate([np.where(told, tolerance * scale, size), [one.std for one in free]])
-        mean = np.concatenate([self.theta, [one.mean for one in free]])
+        stated = np.array([name in self.stated for name in SIDE_PARAMETERS])
+        std = np.concatenate([np.where(stated, tolerance * scale, size), [f.std for f in free]])
+        mean = np.concatenate([self.theta, [f.mean for f in free]])
         for name, value in self.fixed.items():
             k = SIDE_PARAMETERS.index(name)
             mean[k], std[k] = value, HELD * max(abs(value), 1.0) / share
@@ -97,13 +97,13 @@ def case_of(maneuvers: Sequence[Maneuver], aircraft: Aircraft, theta: FloatArray
         stamps = np.concatenate([np.diff(r.inputs[name].t) for r in problem.records if name in r.inputs])
         stated_s = getattr(aircraft, name).delay_s or 0.0
         natural.append(Free((name, "delay_s"), 0.5 * float(np.median(stamps)), NATURAL_STEP, mean=stated_s))
-    for one in nuisances_of(problem, aircraft):
-        place = _PLACES.get(one.kind) or (one.of, _ENTRIES[one.kind])
+    for x in nuisances_of(problem, aircraft):
+        place = _PLACES.get(x.kind) or (x.of, _ENTRIES[x.kind])
         # A lag that the file leaves open is absent from the simulator: such a lag is an effect.
-        if one.kind != "lag" or place in setting:
-            natural.append(Free(place, one.prior.std, NATURAL_STEP * one.per_second, mean=one.prior.mean))
-    told = assemble_lateral(problem).free
-    stated = tuple(name for k, name in enumerate(SIDE_PARAMETERS) if name in aircraft.model and k in told)
+        if x.kind != "lag" or place in setting:
+            natural.append(Free(place, x.prior.std, NATURAL_STEP * x.per_second, mean=x.prior.mean))
+    free = assemble_lateral(problem).free
+    stated = tuple(name for k, name in enumerate(SIDE_PARAMETERS) if name in aircraft.model and k in free)
     given = np.array([aircraft.model.get(n, v) for n, v in zip(SIDE_PARAMETERS, theta, strict=True)])
     begin = Point(theta, lateral_start(problem)[1], setting)
     flown = Flown(problem, throttle, beta_arm_m(aircraft) is not None)
@@ -114,7 +114,7 @@ def free_with(case: Case, effect: SideEffect, plain: Fit) -> tuple[Free, ...]:
     """Return the free parameters of a model with an effect, which replaces a nuisance parameter at its
     place."""
     variant = effect.variant
-    kept = [one for one in free_near(case, plain) if one.place not in effect.places]
+    kept = [f for f in free_near(case, plain) if f.place not in effect.places]
     columns = [None] * len(effect.places) if effect.columns is None else effect.columns.T
     base = base_of(case, effect)
     numbers = zip(effect.places, effect.std, variant.steps, variant.bounds, base, columns, strict=True)
@@ -130,10 +130,10 @@ def free_near(case: Case, plain: Fit) -> tuple[Free, ...]:
 
     Nuisance parameters keep the outputs' derivatives of the plain fit; parameters of known effects do not.
     """
-    natural = {one.place for one in case.natural}
+    natural = {f.place for f in case.natural}
     return tuple(
-        one._replace(column=plain.slopes[:, k] if one.place in natural else None)
-        for k, one in enumerate(plain.free)
+        f._replace(column=plain.slopes[:, k] if f.place in natural else None)
+        for k, f in enumerate(plain.free)
     )
 
 

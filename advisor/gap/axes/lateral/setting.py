@@ -46,9 +46,9 @@ class Flown:
         """Shape (m,): whether other manoeuvres move every control of the flight, so that they predict the
         manoeuvre."""
         base = self.problem
-        each = (tuple(one for one in base.records if one is not left) for left in base.records)
+        each = (tuple(r for r in base.records if r is not left) for left in base.records)
         others = (replace(base, records=records) for records in each)
-        return np.array([all(map(one.flies, filter(base.flies, LATERAL.inputs))) for one in others])
+        return np.array([all(map(r.flies, filter(base.flies, LATERAL.inputs))) for r in others])
 
 
 Setting = Mapping[Place, FloatArray]

@@ -84,9 +84,9 @@ class Starts:
         self, case: Case, plain: Fit, table: Sequence[SideEffect], tolerance: float = ERROR_IF_WRONG
     ) -> None:
         self._case, self._plain = case, plain
-        known = case.prior_of(tolerance, plain.free)
+        prior = case.prior_of(tolerance, plain.free)
         self._columns = plain.columns * plain.weight[:, None]
-        self._information = self._columns.T @ self._columns + np.diag(known.precision)
+        self._information = self._columns.T @ self._columns + np.diag(prior.precision)
         own = plain.assembly.free[plain.assembly.free >= N]
         self._own = plain.sensitivities[:, own] * plain.weight[:, None]
         self._parts = [plain.assembly.owner == m for m in range(plain.assembly.maneuvers)]
@@ -112,9 +112,9 @@ class Starts:
             return self._linear(effect, effect.columns)
         plain = self._plain
         saved = sum(
-            ((value - one.mean) / one.std) ** 2
-            for one, value in zip(plain.free, plain.values[N:], strict=True)
-            if one.place in effect.places
+            ((value - f.mean) / f.std) ** 2
+            for f, value in zip(plain.free, plain.values[N:], strict=True)
+            if f.place in effect.places
         )
         if not saved:
             linear = effect.of in LATERAL.outputs or not effect.starts
@@ -160,7 +160,7 @@ class Starts:
             ways = [self._without(change * self._plain.weight) for change in changed]
             shares = [np.clip(way @ self._begin / (way @ way + 1e-12), *SECANT) for way in ways]
             left = [self._begin - share * way for share, way in zip(shares, ways, strict=True)]
-            squares = np.array([[float(one[rows] @ one[rows]) for rows in self._parts] for one in left])
+            squares = np.array([[float(rest[rows] @ rest[rows]) for rows in self._parts] for rest in left])
             best = np.argmin(squares, axis=0)
             if effect.sides is None:
                 setting = moved_to(setting, effect.places[:1], np.array([base[0] + shares[0] * values[0]]))

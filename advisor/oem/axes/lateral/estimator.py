@@ -62,32 +62,32 @@ class Errors(NamedTuple):
     def _growth(self) -> float:
         """Mean factor on the derivatives' variances due to the scatter between manoeuvres."""
         stated = np.diag(self.covariance)
-        known = stated > 0.0
+        moving = stated > 0.0
         widened = np.diag(widened_by_scatter(self.covariance, self.contributions))
-        return float(np.mean(widened[known] / stated[known])) if known.any() else 1.0
+        return float(np.mean(widened[moving] / stated[moving])) if moving.any() else 1.0
 
 
 def lateral_modes(theta: FloatArray, errors: Errors, trim: Trim) -> LateralModes:
     """Return the modes at the trim for derivatives ``theta`` (15,), with their errors."""
     a = state_matrix(theta, trim)
-    found = modes_of(a)
+    modes = modes_of(a)
     omega = zeta = roll = spiral = None
     left_out: dict[str, str] = {}
-    if found.dutch_roll is None:
+    if modes.dutch_roll is None:
         left_out["dutch_roll"] = "the aircraft has no oscillation in yaw at these values"
     else:
-        value = found.dutch_roll
+        value = modes.dutch_roll
         slope = _slope(a, value)
         size = abs(value)
         by_size = (value.conjugate() * slope).real / size
         by_damping = -slope.real / size + value.real * by_size / size**2
         omega = _quality(size, by_size, errors)
         zeta = _quality(-value.real / size, by_damping, errors)
-    if found.roll is None or found.spiral is None:
+    if modes.roll is None or modes.spiral is None:
         left_out["roll"] = left_out["spiral"] = "roll and spiral oscillate together at these values"
     else:
-        roll = _quality(-1.0 / found.roll, _slope(a, found.roll).real / found.roll**2, errors)
-        spiral = _quality(found.spiral, _slope(a, found.spiral).real, errors)
+        roll = _quality(-1.0 / modes.roll, _slope(a, modes.roll).real / modes.roll**2, errors)
+        spiral = _quality(modes.spiral, _slope(a, modes.spiral).real, errors)
     return LateralModes(omega, zeta, roll, spiral, left_out)
 
 

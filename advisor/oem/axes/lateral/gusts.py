@@ -120,7 +120,7 @@ class Air(NamedTuple):
     def weighed(self, sums: Sequence[Sums]) -> tuple[float, FloatArray]:
         """Return the log determinant of the residuals' covariance, and the products (k, k) weighted by its
         inverse, of all manoeuvres together."""
-        parts = [self._weighed(one) for one in sums]
+        parts = [self._weighed(s) for s in sums]
         return sum(part.volume for part in parts), np.sum([part.inner for part in parts], axis=0)
 
     def cost(self, sums: Sequence[Sums], prior: Integrated) -> tuple[float, FloatArray]:
@@ -130,14 +130,14 @@ class Air(NamedTuple):
         The derivative of a log determinant is the trace of the inverse times the change (Magnus & Neudecker,
         *Matrix Differential Calculus*, ch. 8).
         """
-        parts, weight = [self._weighed(one) for one in sums], self.noise**-2.0
+        parts, weight = [self._weighed(own) for own in sums], self.noise**-2.0
         left, volume, slopes = prior.left(np.sum([part.inner for part in parts], axis=0))
         by_noise, by_angle, by_memory = np.zeros(len(weight)), 0.0, 0.0
-        for one, part in zip(sums, parts, strict=True):
+        for own, part in zip(sums, parts, strict=True):
             turned = part.likeliest @ slopes
             spread = part.spread + turned @ part.likeliest.T
-            products = np.tensordot(one.squares, slopes, 2) - 2.0 * np.tensordot(one.pulls, turned, 2)
-            by_noise += 2.0 * one.counts - 2.0 * weight * (products + np.tensordot(one.grams, spread, 2))
+            products = np.tensordot(own.squares, slopes, 2) - 2.0 * np.tensordot(own.pulls, turned, 2)
+            by_noise += 2.0 * own.counts - 2.0 * weight * (products + np.tensordot(own.grams, spread, 2))
             by_angle += 2.0 * (len(spread) - float(np.sum(spread * part.stiff)))
             by_memory += self._by_memory(spread, part.stiff)
         total = left + volume + sum(part.volume for part in parts)
@@ -202,13 +202,13 @@ def likeliest(sums: Sequence[Sums], noise: FloatArray, prior: Integrated, near: 
     """
     from scipy.optimize import minimize  # not on the start path
 
-    counts = np.sum([one.counts for one in sums], axis=0)
+    counts = np.sum([s.counts for s in sums], axis=0)
     there = np.flatnonzero(counts)
     own = noise[there]
-    powers = [own**-2.0 @ np.trace(one.grams[there], axis1=1, axis2=2) / np.sum(one.counts) for one in sums]
+    powers = [own**-2.0 @ np.trace(s.grams[there], axis1=1, axis2=2) / np.sum(s.counts) for s in sums]
     size = 1.0 / max(float(np.mean(np.sqrt(powers))), 1e-12)
     # In this unit the curvature of -2 log likelihood is about 2.
-    knots = sum(one.grams.shape[1] for one in sums)
+    knots = sum(s.grams.shape[1] for s in sums)
     unit = np.append(2.0 * counts[there], (knots, knots)) ** -0.5
 
     def air(x: FloatArray) -> Air:

@@ -94,22 +94,22 @@ def nuisances_of(problem: LateralProblem, aircraft: Aircraft) -> tuple[Nuisance,
     """Return the nuisance parameters of a problem; an input that does not move has none."""
     moving = [name for name in LATERAL.inputs if problem.moves(name)]
     stamps = [record.inputs[name].t for record in problem.records for name in moving if name in record.inputs]
-    found = [Nuisance("command", "", Prior(0.0, lateness_std(stamps)))] if stamps else []
+    open_ones = [Nuisance("command", "", Prior(0.0, lateness_std(stamps)))] if stamps else []
     for name in ("bank", "a_y", "beta"):
         measured = [record.outputs[name].t for record in problem.records if name in record.outputs]
         if measured:
-            found.append(Nuisance("delay", name, Prior(0.0, lateness_std(measured))))
+            open_ones.append(Nuisance("delay", name, Prior(0.0, lateness_std(measured))))
             if name == "beta" and beta_arm_m(aircraft) is None:
                 speed = float(np.mean([np.mean(record.airspeed.y) for record in problem.records]))
-                found.append(Nuisance("arm", name, Prior(0.0, PLACE_S * speed), speed))
+                open_ones.append(Nuisance("arm", name, Prior(0.0, PLACE_S * speed), speed))
     for name in moving:
         stated = getattr(aircraft, name).lag_s
         if stated != 0.0:
-            found.append(Nuisance("lag", name, Prior(stated, KNOWN_TO * stated) if stated else USUAL_LAG))
+            open_ones.append(Nuisance("lag", name, Prior(stated, KNOWN_TO * stated) if stated else USUAL_LAG))
     if moving and problem.tells_force:
-        found += [Nuisance("air", "", AIR_SPEED), Nuisance("alpha", "", ANGLE_OF_ATTACK)]
-    found += [Nuisance("term", term, FLAT) for term in problem.terms]
-    return tuple(found)
+        open_ones += [Nuisance("air", "", AIR_SPEED), Nuisance("alpha", "", ANGLE_OF_ATTACK)]
+    open_ones += [Nuisance("term", term, FLAT) for term in problem.terms]
+    return tuple(open_ones)
 
 
 def beta_arm_m(aircraft: Aircraft) -> float | None:
@@ -146,7 +146,7 @@ def columns_of(
     y
         Shape (N,): simulated outputs.
     """
-    columns, known = np.zeros((len(assembly.z), len(nuisances))), assembly.grid.known
+    columns, factors = np.zeros((len(assembly.z), len(nuisances))), assembly.grid.known
     for k, x in enumerate(nuisances):
         if x.kind in ("command", "lag", "term", *EXCESSES):
             columns[:, k] = by[x.name if x.kind in EXCESSES else x.of or "command"]
@@ -158,7 +158,7 @@ def columns_of(
             row = assembly.grid.row[output]
             at, row = np.flatnonzero(row >= 0), row[row >= 0]
             terms = [(state, factor) for of, state, factor, number, _ in SEEN if of == output and number < 0]
-            late = -sum(known[at, factor] * motion[at, 1, state] for state, factor in terms)
-            by_arm = motion[at, 0, LATERAL.states.index("r")] / known[at, SPEED]
+            late = -sum(factors[at, factor] * motion[at, 1, state] for state, factor in terms)
+            by_arm = motion[at, 0, LATERAL.states.index("r")] / factors[at, SPEED]
             columns[row, k] = late if x.kind == "delay" else by_arm
     return columns

@@ -89,10 +89,10 @@ class LateralMotion:
         /,
     ) -> Response | None:
         """Return the response of the model; None if the simulation diverges."""
-        found = simulate(laid, shared, local)
-        if found is None:
+        simulated = simulate(laid, shared, local)
+        if simulated is None:
             return None
-        y, g, motion = found
+        y, g, motion = simulated
 
         def by_term(term: str) -> FloatArray:
             alone = replace(problem, terms={**dict.fromkeys(problem.terms, 0.0), term: 1.0})

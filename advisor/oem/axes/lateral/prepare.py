@@ -33,21 +33,21 @@ def prepare_lateral(maneuvers: Sequence[Maneuver], aircraft: Aircraft) -> Latera
             return few
     measured = [airspeed(m.channels) for m in maneuvers]
     speeds = [
-        found.signal
-        if found is not None
+        speed_read.signal
+        if speed_read is not None
         else _plain_speed(m) or constant_speed(m, aircraft.stated_airspeed_m_s)
-        for found, m in zip(measured, maneuvers, strict=True)
+        for speed_read, m in zip(measured, maneuvers, strict=True)
     ]
-    known = [speed for speed in speeds if speed is not None]
-    if len(known) < len(maneuvers):
+    flown = [speed for speed in speeds if speed is not None]
+    if len(flown) < len(maneuvers):
         return NoEstimate(
             "no_airspeed",
             "No air speed is known, and the turn rate of the path depends on it: set airspeed_m_s.",
         )
     reference = reference_speed(
-        known,
+        flown,
         stated_reference(aircraft, maneuvers),
-        all(found is not None and found.smooth for found in measured),
+        all(speed_read is not None and speed_read.smooth for speed_read in measured),
     )
     outputs = _outputs(maneuvers, aircraft)
     left_out = why_left_out(maneuvers, aircraft)
@@ -64,7 +64,7 @@ def prepare_lateral(maneuvers: Sequence[Maneuver], aircraft: Aircraft) -> Latera
                 theta=signal_of(m.channels["theta"]),
                 q=signal_of(m.channels["q"]),
             )
-            for m, speed in zip(maneuvers, known, strict=True)
+            for m, speed in zip(maneuvers, flown, strict=True)
         ),
         reference_airspeed_m_s=reference,
         servos={
@@ -88,11 +88,11 @@ def _with_terms(
     if isinstance(signals, NoEstimate):
         return signals
     records = tuple(replace(r, signals=s) for r, s in zip(problem.records, signals, strict=True))
-    known = {name: [measured_by(r)[name].y for r in records] for name in measured_by(records[0])}
-    known |= {name: [r.inputs[of].y for r in records if of in r.inputs] for name, of in CONTROLS.items()}
-    known = {name: parts for name, parts in known.items() if parts}
+    series = {name: [measured_by(r)[name].y for r in records] for name in measured_by(records[0])}
+    series |= {name: [r.inputs[of].y for r in records if of in r.inputs] for name, of in CONTROLS.items()}
+    series = {name: parts for name, parts in series.items() if parts}
     at_zero = {term.name: 0.0 for term in terms}
-    return replace(problem, records=records, terms=at_zero, means=means_of(known))
+    return replace(problem, records=records, terms=at_zero, means=means_of(series))
 
 
 def _plain_speed(maneuver: Maneuver) -> Signal | None:

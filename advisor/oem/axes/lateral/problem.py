@@ -285,6 +285,6 @@ def _known(
     true, tangent = 1.0 + problem.airspeed_excess, np.tan(theta)
     speed = true * record.airspeed.at(t)
     weight = GRAVITY_M_S2 / (true * read) * np.cos(theta)
-    one = np.ones(len(t))
-    of_rates = one, np.sin(alpha), -np.cos(alpha), weight, q * tangent, tangent
-    return np.column_stack([*of_rates, problem.beta_arm_m / speed, speed, problem.accelerometer_arm_m * one])
+    ones = np.ones(len(t))
+    of_rates = ones, np.sin(alpha), -np.cos(alpha), weight, q * tangent, tangent
+    return np.column_stack([*of_rates, problem.beta_arm_m / speed, speed, problem.accelerometer_arm_m * ones])

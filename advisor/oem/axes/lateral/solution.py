@@ -119,8 +119,8 @@ def search_lateral(
         return solution
     merged = merged if modes is None else bool(np.all(np.diag(modes - SAME * solution.covariance_cr) <= 0.0))
     for lag in (x for x in weighed if x.kind == "lag"):
-        found = replace(solution, modes=modes)
-        modes = profiled(found, lag, Posterior(weighed, share), partial(_refitted, prior)).modes
+        with_modes = replace(solution, modes=modes)
+        modes = profiled(with_modes, lag, Posterior(weighed, share), partial(_refitted, prior)).modes
     solution = _with_modes(solution, prior, modes)
     before = None
     if near is not None and near.searched.noise is not None:
@@ -146,9 +146,9 @@ def _with_modes(solution: Solution, prior: Priors, other: FloatArray | None) -> 
         ]
         share = external_share(pairs, solution.theta[_NAMES.index(moment)])
         for j in (_NAMES.index(letter + moment[1:]) for letter in "YLN"):
-            known = prior.std[j] ** -2
-            if (variance := covariance[j, j]) > 0.0 and (told := 1.0 / variance - known) > 0.0:
-                more = 1.0 / (share * told + known) - variance
+            stated = prior.std[j] ** -2
+            if (variance := covariance[j, j]) > 0.0 and (gained := 1.0 / variance - stated) > 0.0:
+                more = 1.0 / (share * gained + stated) - variance
                 total += more * np.outer(covariance[j], covariance[j]) / variance**2
     return replace(solution, modes=total)
 
@@ -223,12 +223,12 @@ def _evaluated(fit: Fit, prior: Priors, final: bool) -> Solution | NoEstimate:
     return solution if isinstance(solution, NoEstimate) else _above_bound(solution)
 
 
-def _above_bound(found: Solution) -> Solution:
+def _above_bound(solution: Solution) -> Solution:
     """Return the solution with no error below the bound, because instruments have a noise floor."""
-    bound, stated = np.diag(found.covariance_cr), np.diag(found.covariance)
+    bound, stated = np.diag(solution.covariance_cr), np.diag(solution.covariance)
     ratio = np.divide(bound, stated, out=np.ones_like(stated), where=stated > 0.0)
     factor = np.sqrt(np.maximum(ratio, 1.0))
-    return replace(found, covariance=found.covariance * np.outer(factor, factor))
+    return replace(solution, covariance=solution.covariance * np.outer(factor, factor))
 
 
 def lateral_not_identifiable(solution: Solution) -> dict[str, str]:

@@ -64,11 +64,11 @@ def _in_parts(problem: LateralProblem) -> LateralProblem:
 def lateral_equations(problem: LateralProblem) -> dict[tuple[str, ...], list[Equations]]:
     """Return the regression equations of all records, by the names of the equation's derivatives."""
     prepared = [_Motion(record, problem) for record in problem.records]
-    found = {"Y": [m.force() for m in prepared if m.has_force]}
+    by_letter = {"Y": [m.force() for m in prepared if m.has_force]}
     for letter, output in (("L", "p"), ("N", "r")):
-        found[letter] = [Equations(m.integrals(letter), m.signals[output], m.own()) for m in prepared]
+        by_letter[letter] = [Equations(m.integrals(letter), m.signals[output], m.own()) for m in prepared]
     names = LATERAL.names.shared
-    return {tuple(n for n in names if n.startswith(f"{y}_")): parts for y, parts in found.items()}
+    return {tuple(n for n in names if n.startswith(f"{y}_")): parts for y, parts in by_letter.items()}
 
 
 class _Motion:
