@@ -14,7 +14,7 @@ from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.oem import estimator
 from advisor.oem.driven_motion.estimate import Driven, driven
 from advisor.oem.driven_motion.kalman_filter import driven_filter
-from advisor.oem.driven_motion.likeliest_noise import first_noise, noise_of
+from advisor.oem.driven_motion.likeliest_noise import first_noise
 from advisor.oem.driven_motion.setting import Model
 from advisor.oem.estimate import Estimate
 from advisor.oem.estimator import estimate
@@ -135,7 +135,7 @@ def test_no_other_size_of_one_noise_is_clearly_likelier() -> None:
     model = Model(PITCH, (), lambda problem, shared: about_zero(precision(problem, shared)))
     setting = model.at(start.problem, start.optimum.shared, start.optimum.local)
     assert setting is not None
-    noise = noise_of(setting, first_noise(setting))
+    noise = first_noise(setting)
     moves = 0.3 * np.concatenate([np.eye(len(noise.logarithms)), -np.eye(len(noise.logarithms))])
     costs = [setting.cost(noise.at(noise.logarithms + move)) for move in moves]
     assert min(costs) > setting.cost(noise) - 4.0

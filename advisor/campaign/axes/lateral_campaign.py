@@ -136,9 +136,11 @@ class LateralCampaign(AxisCampaign):
         joined = self._joined()
         if self._joint is None or self._joint[0] != joined:
             maneuvers = [self.judged[i].maneuver for i in joined]
+            # At the end all manoeuvres are searched from the data alone.
+            search = None if self._ended else self._search
             joint = self._parts.make(
                 "lateral, joint estimate",
-                lambda: estimate_lateral(maneuvers, self._aircraft, self._search),
+                lambda: estimate_lateral(maneuvers, self._aircraft, search),
                 untold,
             )
             self._joint = joined, joint if isinstance(joint, LateralEstimate) else None

@@ -41,16 +41,6 @@ FAR = 1.0
 estimated."""
 
 
-class Earlier(NamedTuple):
-    """Estimate of earlier records of the aircraft, at which a search begins."""
-
-    noise: Noise
-    problem: Any
-    """The records, with the earlier servos and clocks."""
-    place: tuple[FloatArray, FloatArray]
-    """Derivatives and local parameters."""
-
-
 class Driven(NamedTuple):
     """An estimate with unknown forces."""
 
@@ -72,7 +62,7 @@ def driven(
     motion: DrivenMotion,
     parameters: Sequence[Parameter],
     priors: Callable[[Any, FloatArray], Priors],
-    near: Earlier | None = None,
+    near: Noise | None = None,
 ) -> Driven | None:
     """Return the estimate with unknown forces; None if the motion is not driven, or if the search diverges.
 
@@ -85,7 +75,7 @@ def driven(
     priors
         Function that returns the priors of the derivatives for a problem and shared parameters.
     near
-        Estimate of earlier records of the aircraft, at which the searches begin.
+        Noise of earlier records of the aircraft, from which the noise search starts.
     """
     weighing = Weighing.by(start.noise.colours, start.assembly)
     coloured = weighing.volume + float(np.sum(weighing.forward(start.residual[:, None]) ** 2))
@@ -98,15 +88,12 @@ def driven(
         return None
     prior = model.prior(here)
     still = weighing.volume + System.of(here, weighing.forward(here.columns), prior).misfit
-    noise = first_noise(here) if near is None else near.noise
+    noise = near or first_noise(here)
     white, volume = here.whitened(here.columns, noise)
     gain = 0.5 * (still - volume - System.of(here, white, prior).misfit)
     if not gain > CLEARLY:
         return None
-    there = None if near is None else model.at(near.problem, *near.place, here)
-    if there is not None and model.cost(there, noise) < model.cost(here, noise):
-        here = there
-    return _descended(model, start, here, noise, gain)
+    return _descended(model, start, here, noise, gain, searched=near is None)
 
 
 def driven_without_alpha(
@@ -125,26 +112,25 @@ def driven_without_alpha(
     air = None if here is None else moving_air(here)
     if here is None or air is None or not air.is_air:
         return None
-    return _descended(model, start, here, air.noise, air.gain, keeps_noise=True)
+    return _descended(model, start, here, air.noise, air.gain, searched=None)
 
 
 def _descended(
-    model: Model, start: Solution, here: Setting, noise: Noise, gain: float, keeps_noise: bool = False
+    model: Model, start: Solution, here: Setting, noise: Noise, gain: float, searched: bool | None
 ) -> Driven | None:
     """Return the estimate from a setting; None if the search diverges.
 
-    After a step the residual shows the noise better, so that the noise is searched again.
+    ``searched`` states whether the noise is that of the setting; None keeps the noise.
     """
     step = Step.of(model, here, noise)
-    is_due = not keeps_noise
     for _ in range(ROUNDS):
-        if is_due and step.pending < FAR:
-            noise, is_due = noise_of(here, noise), False
+        if searched is False and step.pending < FAR:
+            noise, searched = noise_of(here, noise), True
             step = Step.of(model, here, noise)
         better = None if step.pending < SETTLED else step.taken(model, here, noise)
         if better is None:
             break
-        here, is_due = better, not keeps_noise
+        here, searched = better, searched and step.pending < FAR
         step = Step.of(model, here, noise)
     if not step.pending < UNSETTLED:
         return None

@@ -123,10 +123,14 @@ def steps_of(t: FloatArray) -> tuple[FloatArray, IntArray]:
 
 
 def driven_filter(
-    steps: tuple[FloatArray, IntArray], channel: IntArray, seen: FloatArray,
-    driving: tuple[FloatArray, FloatArray, FloatArray], white: FloatArray, coloured: FloatArray,
+    steps: tuple[FloatArray, IntArray],
+    channel: IntArray,
+    seen: FloatArray,
+    driving: tuple[FloatArray, FloatArray, FloatArray],
+    white: FloatArray,
+    coloured: FloatArray,
     memory_s: float,
-) -> Gains:  # fmt: skip
+) -> Gains:
     """Return the Kalman gains of rows in order of time.
 
     Parameters
@@ -156,9 +160,17 @@ def driven_filter(
 
 @kernel(error_model="numpy", fastmath={"contract"})
 def _gains(
-    lengths: FloatArray, keep: FloatArray, kind: IntArray, channel: IntArray, matrix: FloatArray,
-    begun: FloatArray, drive: FloatArray, seen: FloatArray, white: FloatArray, coloured: FloatArray,
-) -> tuple[FloatArray, FloatArray, FloatArray]:  # fmt: skip
+    lengths: FloatArray,
+    keep: FloatArray,
+    kind: IntArray,
+    channel: IntArray,
+    matrix: FloatArray,
+    begun: FloatArray,
+    drive: FloatArray,
+    seen: FloatArray,
+    white: FloatArray,
+    coloured: FloatArray,
+) -> tuple[FloatArray, FloatArray, FloatArray]:
     """Return the transitions (u, s, s), the gains (n, s + o) and the innovations' standard deviations (n,).
 
     The arguments are those of ``driven_filter``.

@@ -37,8 +37,9 @@ value.
 
 
 def first_noise(setting: Setting) -> Noise:
-    """Return the start of the search for the likeliest noise: the better result of two coarse searches."""
-    return min((noise_of(setting, x, _FEW_MANEUVERS, COARSE) for x in _starts(setting)), key=setting.cost)
+    """Return the likeliest noise, from the better of two starts."""
+    few = [noise_of(setting, noise, _FEW_MANEUVERS, COARSE) for noise in _starts(setting)]
+    return noise_of(setting, min(few, key=setting.cost))
 
 
 def noise_of(setting: Setting, noise: Noise, newest: int = MOST_MANEUVERS, settled: float = FINE) -> Noise:

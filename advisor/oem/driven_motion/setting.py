@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from advisor.model.response import Index
-from advisor.oem.driven_motion.kalman_filter import Gains, driven_filter, steps_of
+from advisor.oem.driven_motion.kalman_filter import driven_filter, steps_of
 from advisor.oem.driven_motion.linear import DrivenMotion, Linear
 from advisor.oem.driven_motion.noise import RANGE, Noise
 from advisor.oem.extra import Extra, Parameter
@@ -70,27 +70,35 @@ class Setting:
         own, common = self.sensitivities[:, self.assembly.own], self.sensitivities[:, self.assembly.common]
         return np.column_stack([self.residual, own, common, self.extra.columns])
 
-    def filters(self, noise: Noise, newest: int = 0) -> Iterator[tuple[Index, Gains]]:
-        """Yield the rows and the filter of each of the ``newest`` manoeuvres; 0 means all manoeuvres."""
+    def innovations(
+        self, columns: FloatArray, noise: Noise, newest: int = 0
+    ) -> Iterator[tuple[Index, FloatArray, FloatArray]]:
+        """Yield rows, innovations over their standard deviations, and the standard deviations, for each
+        manoeuvre.
+
+        The innovations (n, k) are those of ``columns`` (N, k). Only the ``newest`` manoeuvres count; 0 means
+        all.
+        """
         white = np.maximum(noise.white, self.floor)[self.measured] ** 2
         coloured = noise.coloured[self.measured]
         for record in self.records[-newest:]:
             at = record.steps, record.channel, record.seen, noise.driving(record.motion)
-            yield record.order, driven_filter(*at, white[record.channel], coloured, noise.memory_s)
+            gains = driven_filter(*at, white[record.channel], coloured, noise.memory_s)
+            yield record.order, gains.innovations(columns[record.order]), gains.std
 
     def whitened(self, columns: FloatArray, noise: Noise) -> tuple[FloatArray, float]:
         """Return the whitened ``columns`` (N, k) and the log determinant."""
         white, volume = np.empty(columns.shape), 0.0
-        for order, gains in self.filters(noise):
-            white[order] = gains.innovations(columns[order])
-            volume += 2.0 * float(np.sum(np.log(gains.std)))
+        for order, own, std in self.innovations(columns, noise):
+            white[order] = own
+            volume += 2.0 * float(np.sum(np.log(std)))
         return white, volume
 
     def terms(self, noise: Noise, newest: int = 0) -> tuple[FloatArray, FloatArray]:
         """Return the whitened residual and the log variance of its innovations, both of shape (n,)."""
-        parts = [(x.innovations(self.residual[rows, None]), x.std) for rows, x in self.filters(noise, newest)]
+        parts = [(own[:, 0], std) for _, own, std in self.innovations(self.residual[:, None], noise, newest)]
         white, std = (np.concatenate(part) for part in zip(*parts, strict=True))
-        return white[:, 0], 2.0 * np.log(std)
+        return white, 2.0 * np.log(std)
 
     def cost(self, noise: Noise, newest: int = 0) -> float:
         """Return -2 log likelihood of the residual, up to a constant."""
@@ -112,28 +120,18 @@ class Model:
         """Return the priors of the derivatives at a setting."""
         return self.priors(setting.problem, setting.shared)
 
-    def cost(self, setting: Setting, noise: Noise) -> float:
-        """Return -2 log posterior density of a setting, up to a constant."""
-        prior, common = self.prior(setting), setting.assembly.common
-        apart = (setting.shared - prior.mean)[common] / prior.std[common]
-        return setting.cost(noise) + setting.penalty + float(apart @ apart)
-
-    def at(
-        self, problem: Any, shared: FloatArray, local: FloatArray, like: Setting | None = None
-    ) -> Setting | None:
-        """Return a setting of all parameters; None on numerical overflow.
-
-        The filter keeps the time steps of a setting ``like`` this one. Steps that follow the clocks would be
-        rounded in another way at every setting, and make the likelihood rough.
-        """
+    def at(self, problem: Any, shared: FloatArray, local: FloatArray) -> Setting | None:
+        """Return a setting of all parameters; None on numerical overflow."""
         laid = self.motion.laid(problem)
         response = self.motion.respond(problem, laid, shared, local, self.parameters)
         if response is None:
             return None
-        measured = np.unique(laid.channel)
-        timed = _in_time(laid, measured) if like is None else (record[2:] for record in like.records)
-        motions = (self.motion.linear(problem, shared, m) for m in range(laid.maneuvers))
-        records = [Record(x, x.all_seen[measured], *rows) for x, rows in zip(motions, timed, strict=True)]
+        measured, records = np.unique(laid.channel), []
+        for m, rows in enumerate(laid.blocks):
+            motion = self.motion.linear(problem, shared, m)
+            order = rows.start + np.argsort(laid.t[rows], kind="stable")
+            channel = np.searchsorted(measured, laid.channel[order])
+            records.append(Record(motion, motion.all_seen[measured], order, steps_of(laid.t[order]), channel))
         return Setting(
             problem,
             laid,
@@ -147,13 +145,6 @@ class Model:
             measured,
             _floor(laid, response.y),
         )
-
-
-def _in_time(laid: Laid, measured: Index) -> Iterator[tuple[Index, tuple[FloatArray, Index], Index]]:
-    """Yield order, steps and channel of a ``Record`` for each manoeuvre."""
-    for rows in laid.blocks:
-        order = rows.start + np.argsort(laid.t[rows], kind="stable")
-        yield order, steps_of(laid.t[order]), np.searchsorted(measured, laid.channel[order])
 
 
 def _floor(laid: Laid, y: FloatArray) -> FloatArray:

@@ -14,8 +14,6 @@ from advisor.process.arrays import FloatArray
 
 _SCALES = (1.0, 0.5, 0.25, 0.1, 0.03)
 """Numerical: tried shares of a step."""
-_FLAT = 0.1
-"""Numerical: promised decrease of -2 log likelihood below which no shorter step is tried."""
 _KEPT = 0.5
 """Numerical: share of the promised decrease of -2 log likelihood at which no shorter step is tried."""
 
@@ -70,21 +68,26 @@ class Step(NamedTuple):
         """
         if not self.own:
             return None
+        prior = model.prior(here)
         common, own = here.assembly.common, here.assembly.own
-        begun = lowest = model.cost(here, noise)
+
+        def cost(setting: Setting) -> float:
+            apart = (setting.shared - prior.mean)[common] / prior.std[common]
+            return setting.cost(noise) + setting.penalty + float(apart @ apart)
+
+        begun = lowest = cost(here)
         best = None
         for scale in _SCALES:
             shared, local = here.shared.copy(), here.local.copy()
             shared[common] += scale * self.common[: len(common)]
             local[:, own - len(here.assembly.names.shared)] += scale * np.array(self.own)
             problem = moved_by(scale * self.common[len(common) :], here.problem, model.parameters)
-            trial = model.at(problem, shared, local, here)
-            reached = np.inf if trial is None else model.cost(trial, noise)
+            trial = model.at(problem, shared, local)
+            reached = np.inf if trial is None else cost(trial)
             if reached < lowest:
                 best, lowest = trial, reached
             elif best is not None:
                 break
-            promised = scale * (2.0 - scale) * self.promise
-            if promised < _FLAT or begun - lowest > _KEPT * promised:
+            if begun - lowest > _KEPT * scale * (2.0 - scale) * self.promise:
                 break
         return best

@@ -20,7 +20,7 @@ from advisor.oem.axes.lateral.motion import FLOOR, LateralMotion
 from advisor.oem.axes.lateral.problem import LateralProblem
 from advisor.oem.axes.lateral.start import lateral_start
 from advisor.oem.descent import Fit, descended
-from advisor.oem.driven_motion.estimate import Earlier, driven
+from advisor.oem.driven_motion.estimate import driven
 from advisor.oem.driven_motion.noise import Noise
 from advisor.oem.estimate import NoEstimate
 from advisor.oem.evaluation import share_of
@@ -87,10 +87,10 @@ def search_lateral(
     problem = begun(problem, nuisances)
     start = _holding(problem, lateral_start(problem))
     prior = priors_of(problem, start[0])
-    resumed = None if near is None else _resumed(problem, nuisances, start[1], near, near.searched.still)
+    resumed = None if near is None else _resumed(problem, nuisances, start[1], near)
     # One hill of earlier records stays one with further records.
     merged = resumed is not None and near is not None and near.searched.merged
-    if resumed is None or near is None:
+    if resumed is None:
         fit = descended(_MOTION, problem, (), prior, start, FIRST_LOOK)
         if not isinstance(fit, NoEstimate) and _has_diverged(fit):
             # A regression without a side force may begin with an aircraft that rolls away.
@@ -100,7 +100,7 @@ def search_lateral(
             return RUNS_AWAY
         solution = _evaluated(fit, prior, final=False)
     else:
-        (problem, start), solution = resumed, near.searched.still
+        problem, start, solution = resumed
     for final in (True,) if resumed else (False, True):
         if isinstance(solution, NoEstimate):
             return solution
@@ -122,11 +122,8 @@ def search_lateral(
         with_modes = replace(solution, modes=modes)
         modes = profiled(with_modes, lag, Posterior(weighed, share), partial(_refitted, prior)).modes
     solution = _with_modes(solution, prior, modes)
-    before = None
-    if near is not None and near.searched.noise is not None:
-        there = _resumed(problem, nuisances, solution.optimum.local, near, near.searched.solution)
-        before = there and Earlier(near.searched.noise, *there)
-    forces = driven(solution, _MOTION, nuisances, lambda *_: replace(prior, share=1.0), before)
+    noise = None if near is None else near.searched.noise
+    forces = driven(solution, _MOTION, nuisances, lambda *_: replace(prior, share=1.0), near=noise)
     answer = solution if forces is None else _with_modes(_above_bound(forces.solution), prior, modes)
     return Searched(answer, solution, forces and forces.noise, merged)
 
@@ -191,13 +188,14 @@ def _holding(problem: LateralProblem, place: tuple[FloatArray, FloatArray]) -> t
 
 
 def _resumed(
-    problem: LateralProblem, nuisances: Sequence[Nuisance], local: FloatArray, near: Near, there: Solution
-) -> tuple[LateralProblem, tuple[FloatArray, FloatArray]] | None:
-    """Return problem and place at the servos, clocks and derivatives of a solution of earlier records.
+    problem: LateralProblem, nuisances: Sequence[Nuisance], local: FloatArray, near: Near
+) -> tuple[LateralProblem, tuple[FloatArray, FloatArray], Solution] | None:
+    """Return problem and place at the servos, clocks and derivatives of another solution, and that solution.
 
     ``local`` (m, l) are the local parameters of records that are new to the other solution. None where the
     other solution has other servos or clocks.
     """
+    there = near.searched.still
     values = {x.name: x.read(there.problem) for x in there.parameters}
     if values.keys() != {x.name for x in nuisances}:
         return None
@@ -205,7 +203,7 @@ def _resumed(
         problem = x.write(problem, values[x.name])
     pairs = zip(near.places, local, strict=True)
     local = np.array([own if k is None else there.optimum.local[k] for k, own in pairs])
-    return problem, (there.optimum.shared, local)
+    return problem, (there.optimum.shared, local), there
 
 
 def _has_diverged(fit: Fit) -> bool:
