@@ -58,7 +58,7 @@ LIMITS = {
     "constants that decide": 25,
     "names compared": 11,
     "complex functions": 0,
-    "lines of estimation": 16359,
+    "lines of estimation": 16363,
     "lines of the package": 60900,
     "files naming an axis": 109,
     "vague names": 23,

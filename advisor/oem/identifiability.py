@@ -17,6 +17,7 @@ import numpy as np
 
 from advisor.aircraft.reference import PARAMETERS
 from advisor.model.short_period import ShortPeriod
+from advisor.oem.correlation import HIGH_CORRELATION, correlation_matrix
 from advisor.oem.solution import Solution
 from advisor.process.arrays import FloatArray
 from advisor.words.quantiles import NORMAL_95
@@ -25,16 +26,7 @@ LARGEST_ERROR = 0.5
 """Largest corrected standard deviation over the parameter's natural size, for a usable value."""
 LEAST_OWN_MOTION = 0.02
 """Least RMS elevator motion that no feedback explains, as a share of the whole motion."""
-HIGH_CORRELATION = 0.9
-"""Absolute correlation of two parameters above which a note is written."""
 LEVEL_UNKNOWN = "not identifiable without a measured angle of attack, whose offset it depends on"
-
-
-def correlation_matrix(covariance: FloatArray) -> FloatArray:
-    """Return the correlations (n, n) of a covariance (n, n); NaN for a parameter without variance."""
-    variance = np.diag(covariance)
-    scale = np.sqrt(np.where(np.isfinite(variance) & (variance > 0.0), variance, np.nan))
-    return np.asarray(np.clip(covariance / np.outer(scale, scale), -1.0, 1.0))
 
 
 def natural_size(theta: FloatArray) -> Mapping[str, float]:

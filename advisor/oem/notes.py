@@ -6,8 +6,9 @@ import numpy as np
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft.reference import PARAMETERS
+from advisor.oem.correlation import HIGH_CORRELATION
 from advisor.oem.findings import line_of, value_in_words
-from advisor.oem.identifiability import HIGH_CORRELATION, correlated
+from advisor.oem.identifiability import correlated
 from advisor.oem.instrument_fit import CONTRADICTS, Identified
 from advisor.oem.instruments import KNOWN_TO
 from advisor.oem.known_instruments import found_of

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from advisor.oem.identifiability import correlation_matrix
+from advisor.oem.correlation import correlation_matrix
 
 
 def test_a_covariance_of_known_scale_gives_its_correlation():

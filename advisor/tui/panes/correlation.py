@@ -8,8 +8,8 @@ from textual.containers import VerticalScroll
 from textual.widgets import Static
 
 from advisor.aircraft.reference import PARAMETERS as NAMES
+from advisor.oem.correlation import HIGH_CORRELATION, correlation_matrix
 from advisor.oem.estimate import Estimate
-from advisor.oem.identifiability import HIGH_CORRELATION, correlation_matrix
 from advisor.process.arrays import FloatArray
 from advisor.session.view import View
 from advisor.tui.panes.lines import Redrawn
