@@ -16,8 +16,9 @@ from dataclasses import replace
 import numpy as np
 
 from advisor.aircraft.reference import SIDE_PARAMETERS
-from advisor.gap.axes.lateral.comparison import compare_side
-from advisor.oem.axes.lateral.estimator import estimate_lateral
+from advisor.gap.axis.comparison import compare_axis
+from advisor.model.axes.lateral import LATERAL
+from advisor.oem.axis.estimator import estimate_axis
 from advisor.oem.estimate import NoEstimate
 from benchmarks.lateral_gap import AIRCRAFT, CASES, recordings, said_of, scenario_of
 from sim.lateral import UAV, lateral_flight
@@ -41,7 +42,7 @@ def flown(seed: int, name: str, size: float, rng: np.random.Generator) -> tuple[
     flight = recordings(lateral_flight(scenario_of(seed, {name: {CASES[name].parameter: size}})))
     given = dict(UAV) | {one: UAV[one] * (1.0 + rng.uniform(-MOST, MOST)) for one in WRONG}
     aircraft = replace(AIRCRAFT, model=given)
-    estimate, found = estimate_lateral(flight, aircraft), compare_side(flight, aircraft)
+    estimate, found = estimate_axis(LATERAL, flight, aircraft), compare_axis(LATERAL, flight, aircraft)
     assert not isinstance(estimate, NoEstimate)
     assert not isinstance(found, NoEstimate)
     alone = dict(zip(SIDE_PARAMETERS, estimate.theta.tolist(), strict=True))

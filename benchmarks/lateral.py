@@ -26,10 +26,9 @@ from advisor.analysis.log_series import LogSeries
 from advisor.campaign.campaign import Campaign
 from advisor.campaign.state import LateralState
 from advisor.model.axes.lateral import LATERAL
-from advisor.oem.axes.lateral.estimate import LateralEstimate
-from advisor.oem.axes.lateral.prediction import predicted_lateral
-from advisor.oem.axes.lateral.problem import LateralProblem, LateralRecord
-from advisor.oem.axes.lateral.solution import solve_lateral
+from advisor.oem.axis.estimator import AxisEstimate, predicted
+from advisor.oem.axis.problem import AxisProblem, AxisRecord
+from advisor.oem.axis.search import solve
 from advisor.oem.estimate import NoEstimate
 from advisor.oem.rows import Signal
 from advisor.oem.solution import Solution
@@ -172,14 +171,14 @@ LEAST_R2 = 0.90
 """Share of roll and yaw rate of withheld manoeuvres that the model must explain."""
 
 
-def _predicted(name_of_row: str, model: LateralEstimate, file: Path) -> Iterator[str]:
+def _predicted(name_of_row: str, model: AxisEstimate, file: Path) -> Iterator[str]:
     """Yield the shares of roll and yaw rate that a model explains in each withheld manoeuvre, and in all."""
     aircraft = Aircraft(alpha=Alpha("aoa_ssa", 0.0), beta=Beta("aoa_ssa", 0.0))
     wanted = [s for s in read_segments(file) if not s.name.startswith(("elev", "throttle"))]
     segments = list(map(rolled, wanted)) if is_rolled([maneuver_of(s, 1) for s in wanted]) else wanted
     left, whole = np.zeros(2), np.zeros(2)
     for number, segment in enumerate(segments, 1):
-        fits = predicted_lateral(maneuver_of(segment, number), model, aircraft)
+        fits = predicted(maneuver_of(segment, number), model, aircraft)
         assert not isinstance(fits, NoEstimate)
         power = np.array([np.sum((fits[n].measured - np.mean(fits[n].measured)) ** 2) for n in ("p", "r")])
         lost = np.array([np.sum(fits[n].residual ** 2) for n in ("p", "r")])
@@ -249,8 +248,8 @@ def bound(campaigns: int) -> Iterator[str]:
             noisy = {n: Signal(t, y + rng.normal(0.0, _NOISE[n], len(t))) for n, y in outputs.items()}
             still = {n: Signal(t[[0, -1]], np.full(2, v)) for n, v in
                      (("airspeed", 130.0), ("alpha", 0.06), ("theta", 0.06), ("q", 0.0))}  # fmt: skip
-            records.append(LateralRecord({control: Signal(t, doublet(t))}, noisy, **still))
-        found = solve_lateral(LateralProblem(tuple(records)))
+            records.append(AxisRecord({control: Signal(t, doublet(t))}, noisy, **still))
+        found = solve(AxisProblem(LATERAL, tuple(records)))
         if not isinstance(found, Solution):
             continue
         errors.append(found.theta - truth)

@@ -19,7 +19,7 @@ from advisor.aircraft.controls import SideControl
 from advisor.campaign.axes.lateral_campaign import LateralCampaign
 from advisor.campaign.hand_decisions import ByHand
 from advisor.flight.maneuvers.maneuver import Maneuver
-from advisor.oem.axes.lateral.estimate import LateralEstimate
+from advisor.oem.axis.estimator import AxisEstimate
 from advisor.process.parts import Parts
 from benchmarks.lateral_gap import recordings, scenario_of
 from benchmarks.studies.forecast import Forecast, score
@@ -100,7 +100,7 @@ def _taken(flown: Sequence[Maneuver], gusts: float, stated_s: float | None) -> F
     )  # fmt: skip
 
 
-def _held(model: LateralEstimate | None) -> Iterator[bool]:
+def _held(model: AxisEstimate | None) -> Iterator[bool]:
     """Yield whether each stated interval holds the truth."""
     for name in JUDGED:
         if model is not None and name not in model.not_identifiable:

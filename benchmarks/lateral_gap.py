@@ -21,10 +21,11 @@ from advisor.aircraft.controls import SideControl
 from advisor.aircraft.reference import SIDE_PARAMETERS
 from advisor.flight.maneuvers.maneuver import Maneuver, Span
 from advisor.flight.signals.record import Channel
-from advisor.gap.axes.lateral.comparison import compare_side
-from advisor.gap.axes.lateral.diagnosis import diagnose_side
-from advisor.gap.axes.lateral.models import case_of
+from advisor.gap.axis.comparison import compare_axis
+from advisor.gap.axis.diagnosis import diagnose_side
+from advisor.gap.axis.models import case_of
 from advisor.gap.result import Diagnosis
+from advisor.model.axes.lateral import LATERAL
 from advisor.oem.estimate import NoEstimate
 from advisor.simulators.axes.side_difference import side_without_difference
 from advisor.simulators.specification import simulator_of
@@ -108,7 +109,7 @@ def diagnosed(seed: int, effects: Effects) -> Diagnosis | None:
 
 def diagnosis_of(flight: Sequence[Maneuver]) -> Diagnosis | None:
     """Return the diagnosis of manoeuvres with the aircraft's true derivatives."""
-    case = case_of(flight, AIRCRAFT, np.array([UAV[name] for name in SIDE_PARAMETERS]))
+    case = case_of(LATERAL, flight, AIRCRAFT, np.array([UAV[name] for name in SIDE_PARAMETERS]))
     assert not isinstance(case, NoEstimate)
     return diagnose_side(case)
 
@@ -126,7 +127,7 @@ def diagnosed_in_jsbsim(seed: int, effects: Effects) -> Diagnosis | None:
         beside, as_file = side_without_difference(flight, simulator, Aircraft(aileron=KNOWN, rudder=KNOWN))
     finally:
         simulator.close()
-    found = compare_side(beside, as_file)
+    found = compare_axis(LATERAL, beside, as_file)
     assert not isinstance(found, NoEstimate)
     return found if found.evidence else None
 

@@ -20,8 +20,7 @@ from advisor.aircraft.controls import SideControl
 from advisor.aircraft_file.read import load_aircraft
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.model.axes.lateral import LATERAL, Trim, modes_of, state_matrix
-from advisor.oem.axes.lateral.estimate import LateralEstimate
-from advisor.oem.axes.lateral.estimator import estimate_lateral
+from advisor.oem.axis.estimator import AxisEstimate, estimate_axis
 from advisor.words.quantiles import NORMAL_95
 from benchmarks.lateral import KNOWN, MODES, Known, analyzed
 from benchmarks.lateral_campaigns import GUSTS_M_S, LAGS_S
@@ -47,7 +46,7 @@ class Told:
     """Half-width over the true value."""
 
 
-def told_of(group: str, estimate: LateralEstimate, truth: Mapping[str, float]) -> Iterator[Told]:
+def told_of(group: str, estimate: AxisEstimate, truth: Mapping[str, float]) -> Iterator[Told]:
     """Yield every stated interval whose truth is known."""
     found = {n: (estimate.value(n), float(estimate.std[k])) for k, n in enumerate(estimate.names)}
     found = {name: value for name, value in found.items() if name not in estimate.not_identifiable}
@@ -71,17 +70,17 @@ def simulated(seed: int, flights: int) -> Iterator[Told]:
         control = SideControl(lag_s=lag_s if states else None, delay_s=0.0)
         aircraft = Aircraft(aileron=control, rudder=control)
         for maneuver in recordings(lateral_flight(scenario)):
-            estimate = estimate_lateral([maneuver], aircraft)
-            if isinstance(estimate, LateralEstimate):
+            estimate = estimate_axis(LATERAL, [maneuver], aircraft)
+            if isinstance(estimate, AxisEstimate):
                 air = "gusts" if gusts else "still air"
                 yield from told_of(f"{air}, {_flown(estimate)}", estimate, _truth(maneuver, estimate))
 
 
-def _flown(estimate: LateralEstimate) -> str:
+def _flown(estimate: AxisEstimate) -> str:
     return " and ".join(estimate.flown)
 
 
-def _truth(maneuver: Maneuver, estimate: LateralEstimate) -> Mapping[str, float]:
+def _truth(maneuver: Maneuver, estimate: AxisEstimate) -> Mapping[str, float]:
     """Return the derivatives and modes of the bundled aircraft at a manoeuvre's trim."""
     assert estimate.airspeed_m_s is not None
     alpha, theta = (float(np.mean(maneuver.channels[name].y)) for name in ("alpha", "theta"))
@@ -98,7 +97,7 @@ def recorded(known: Known, folder: Path) -> Iterator[Told]:
     aircraft = load_aircraft(folder / f"{known.log}.yaml")
     aircraft = replace(aircraft, aileron=known.aileron, rudder=known.rudder, beta=known.beta)
     for one in analyzed(folder / f"{known.log}.tlog", aircraft).maneuvers:
-        if not isinstance(one.estimate, LateralEstimate):
+        if not isinstance(one.estimate, AxisEstimate):
             continue
         speed = one.estimate.airspeed_m_s or 1.0
         ratio = speed / SPEEDS_M_S.get(known.log, speed)

@@ -87,7 +87,7 @@ def _diagnosed_once(compare_flown: Callable[..., Result]) -> Callable[..., Resul
 
 def record_estimates(patch: pytest.MonkeyPatch) -> None:
     """Let campaigns, the doctor and exports read estimates and slopes that another test of this run made."""
-    for module, name in ((single_maneuver, "estimate"), (lateral_campaign, "estimate_lateral")):
+    for module, name in ((single_maneuver, "estimate"), (lateral_campaign, "estimate_axis")):
         patch.setattr(module, name, _estimated_once(getattr(module, name)))
     patch.setattr(as_flown, "estimate_jointly", _estimated_once(as_flown.estimate_jointly))
     slopes = jsbsim_run._answered

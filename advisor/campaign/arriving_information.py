@@ -20,7 +20,8 @@ from advisor.decision.information import knowledge
 from advisor.decision.verdict import FlightTestVerdict
 from advisor.flight.elevator.elevator_watch import SETTLE_S
 from advisor.flight.maneuvers.maneuver import Maneuver
-from advisor.oem.axes.lateral.estimator import estimate_lateral
+from advisor.model.axes.lateral import LATERAL
+from advisor.oem.axis.estimator import estimate_axis
 from advisor.oem.estimate import Estimate
 from advisor.oem.estimator import estimate
 from advisor.words.axes import AxisName
@@ -110,7 +111,7 @@ class ArrivingInformation:
         return alone, {name: _finite(100.0 * share[name]) for name in plan.parameters}
 
     def _side(self, cut: Maneuver) -> tuple[Estimate | None, dict[str, float | None]]:
-        alone = estimate_lateral([cut], self._aircraft)
+        alone = estimate_axis(LATERAL, [cut], self._aircraft)
         if not isinstance(alone, Estimate):
             return None, dict.fromkeys(JUDGED)
         shares = shares_of(alone, self._aircraft.campaign.tolerance_percent)

@@ -7,7 +7,7 @@ from dataclasses import replace
 from advisor.aircraft.aircraft import Aircraft
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.flight.signals.instrument_finding import InstrumentFinding
-from advisor.oem.axes.lateral.estimate import LateralEstimate
+from advisor.oem.axis.estimator import AxisEstimate
 from advisor.oem.estimate import Estimate, NoEstimate
 from advisor.oem.findings import findings_of
 from advisor.words.digits import with_half
@@ -66,7 +66,7 @@ def with_fit(
     return tuple(by_code.values())
 
 
-def side_signs(model: LateralEstimate | None, aircraft: Aircraft) -> tuple[InstrumentFinding, ...]:
+def side_signs(model: AxisEstimate | None, aircraft: Aircraft) -> tuple[InstrumentFinding, ...]:
     """Return the direction in which positive aileron rolls and positive rudder yaws, if the motion determines
     the direction.
 

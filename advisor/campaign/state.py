@@ -18,7 +18,7 @@ from advisor.flight.signals.power_on import Course
 from advisor.flight.signals.track import ChannelStatus
 from advisor.flight.stream.flights import FlightHeard
 from advisor.flight.vehicle.vehicle import Vehicle
-from advisor.oem.axes.lateral.estimate import LateralEstimate
+from advisor.oem.axis.estimator import AxisEstimate
 from advisor.oem.estimate import Estimate, NoEstimate
 from advisor.process.parts import FailedPart
 from advisor.words.axes import AXES, AxisName
@@ -65,7 +65,7 @@ class AxisState(Generic[E]):
         return any(judged.verdict.accepted for judged in self.maneuvers)
 
 
-LateralState = AxisState[LateralEstimate]
+LateralState = AxisState[AxisEstimate]
 """State of the campaign of roll and yaw."""
 
 

@@ -17,7 +17,7 @@ from advisor.decision.axes.lateral_stop import JUDGED
 from advisor.decision.axes.linear_motion import PITCH, SIDE, Motion, sensitivities
 from advisor.decision.envelope import moved_controls
 from advisor.flight.maneuvers.maneuver import Maneuver
-from advisor.oem.axes.lateral.estimate import LateralEstimate
+from advisor.oem.axis.estimator import AxisEstimate
 from advisor.oem.estimate import Estimate
 from advisor.process.arrays import FloatArray
 
@@ -42,7 +42,7 @@ def arriving(flying: Maneuver, until_s: float, pitch: Known, side: Known) -> Arr
         cut = up_to(until_s, flying, pitch.since_s)
         percent |= _added(cut, pitch, PITCH, {"q", "elevator"}, judged)
     names = [name for name, control in JUDGED.items() if control in moved and name in side.percent]
-    if isinstance(side.model, LateralEstimate) and names:
+    if isinstance(side.model, AxisEstimate) and names:
         cut = up_to(until_s, flying, side.since_s)
         percent |= _added(cut, side, SIDE, {"p", "airspeed"}, names)
     return Arriving(until_s, percent, tuple(name for name in (*judged, *names) if name not in percent))

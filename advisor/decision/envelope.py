@@ -16,7 +16,7 @@ from advisor.flight.maneuvers.maneuver import Maneuver, Span
 from advisor.flight.maneuvers.steady_speed import LEFT, speed_before
 from advisor.flight.signals.record import Channel
 from advisor.flight.signals.trust import distrusted
-from advisor.oem.axes.lateral.problem import LEAST_PART
+from advisor.oem.axis.problem import LEAST_PART
 from advisor.process.arrays import FloatArray
 from advisor.words.digits import distinct_texts
 

@@ -15,7 +15,7 @@ from advisor.decision.response import Response, explained_share
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.model.axes.lateral import Trim, modes_of, state_matrix
 from advisor.model.short_period import ShortPeriod
-from advisor.oem.axes.lateral.estimate import LateralEstimate
+from advisor.oem.axis.estimator import AxisEstimate
 from advisor.oem.estimate import Estimate, NoEstimate
 from advisor.words.quantiles import NORMAL_95
 
@@ -83,7 +83,7 @@ def _aileron_by_file(aircraft: Aircraft) -> float | None:
 
 
 def _aileron_shown(estimate: Estimate) -> float | None:
-    roll = estimate.modes.roll_time_constant if isinstance(estimate, LateralEstimate) else None
+    roll = estimate.modes.get("roll_time_constant") if isinstance(estimate, AxisEstimate) else None
     return None if roll is None else _aileron_s(roll.value)
 
 
@@ -105,7 +105,7 @@ def _rudder_by_file(aircraft: Aircraft) -> float | None:
 
 
 def _rudder_shown(estimate: Estimate) -> float | None:
-    omega = estimate.modes.dutch_roll_omega if isinstance(estimate, LateralEstimate) else None
+    omega = estimate.modes.get("dutch_roll_omega") if isinstance(estimate, AxisEstimate) else None
     return None if omega is None else pi / omega.value
 
 
@@ -152,5 +152,5 @@ def _knows_the_motion(estimate: Estimate) -> bool:
 
 def dutch_roll_s(_: Maneuver, estimate: Estimate | NoEstimate) -> float:
     """Return the period of the Dutch roll, s."""
-    omega = estimate.modes.dutch_roll_omega if isinstance(estimate, LateralEstimate) else None
+    omega = estimate.modes.get("dutch_roll_omega") if isinstance(estimate, AxisEstimate) else None
     return _USUAL_DUTCH_ROLL_S if omega is None else 2.0 * pi / omega.value

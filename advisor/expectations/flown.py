@@ -114,17 +114,17 @@ def _derivatives(model: Estimate | None, names: tuple[str, ...], none: str) -> d
 
 def _modes(state: CampaignState, aircraft: Aircraft) -> Iterator[tuple[str, Measured]]:
     pitch = qualities_of(state, aircraft.reference)
-    side = state.lateral.model.modes if state.lateral is not None and state.lateral.model else None
+    side = state.lateral.model if state.lateral is not None else None
     for key in MODES:
         if key in _SHORT_PERIOD:
             name = _SHORT_PERIOD[key]
             quality = pitch.qualities.get(name) if pitch else None
             reason = pitch.left_out.get(name, "") if pitch else "no manoeuvre of the elevator is accepted"
         else:
-            quality = getattr(side, key, None)
-            mode = next((mode for mode in side.left_out if key.startswith(mode)), "") if side else ""
+            quality = side.modes.get(key) if side else None
+            mode = next((mode for mode in side.modes_left_out if key.startswith(mode)), "") if side else ""
             reason = "no manoeuvre of the aileron or the rudder is accepted"
-            reason = side.left_out.get(mode, "the flight does not show this mode") if side else reason
+            reason = side.modes_left_out.get(mode, "the flight does not show this mode") if side else reason
         yield key, _measured(quality, reason)
 
 

@@ -60,7 +60,9 @@ class Response(NamedTuple):
 class Motion(Protocol):
     """Interface of an axis' simulated motion for the search. A problem holds records, servos and clocks."""
 
-    names: Names
+    @property
+    def names(self) -> Names:
+        """Names of outputs and parameters."""
 
     def laid(self, problem: Any, /) -> Laid:
         """Return the measurements as stacked rows."""

@@ -10,8 +10,6 @@ from dataclasses import replace
 
 import numpy as np
 
-from advisor.oem.axes.lateral.problem import LateralProblem
-from advisor.oem.axes.lateral.start import lateral_equations
 from advisor.oem.colour import Stretch, find_colour, product
 from advisor.oem.estimate import Regressed
 from advisor.oem.problem import OutputErrorProblem, Record
@@ -51,15 +49,6 @@ def _at_centre(record: Record, problem: OutputErrorProblem) -> Record:
     speed = np.inf if record.airspeed is None else record.airspeed.at(t)
     turning = problem.vane_arm_m / speed * finite(record.outputs["q"]).at(t)
     return replace(record, outputs={**record.outputs, "alpha": Signal(t, record.alpha.y + turning)})
-
-
-def lateral_equation_error(problem: LateralProblem) -> Mapping[str, Regressed]:
-    """Return the derivatives of roll and yaw by equation error, without those of controls that do not
-    move."""
-    by_name: dict[str, Regressed] = {}
-    for names, parts in lateral_equations(problem).items():
-        by_name |= _by_name(names, *_with_errors(parts)) if parts else {}
-    return by_name
 
 
 def _by_name(names: Sequence[str], values: FloatArray, std: FloatArray) -> dict[str, Regressed]:

@@ -12,8 +12,9 @@ import numpy as np
 from advisor.aircraft.aircraft import Aircraft
 from advisor.flight.maneuvers.maneuver import Maneuver, Span
 from advisor.flight.signals.record import Channel
+from advisor.model.axes.lateral import LATERAL
 from advisor.model.outputs import SHARED
-from advisor.oem.axes.lateral.estimator import estimate_lateral
+from advisor.oem.axis.estimator import estimate_axis
 from advisor.oem.driven_motion.estimate import driven, driven_without_alpha
 from advisor.oem.estimator import estimate_jointly
 from advisor.oem.following import Follower
@@ -33,7 +34,7 @@ def warm() -> None:
             estimate(solution, PITCH, (), lambda *_: about_zero(np.zeros(len(SHARED))))
     estimate_jointly([maneuver, maneuver], Aircraft())
     Follower(Aircraft()).refresh(maneuver)
-    estimate_lateral([_rolled(maneuver)], Aircraft())
+    estimate_axis(LATERAL, [_rolled(maneuver)], Aircraft())
 
 
 def _rolled(maneuver: Maneuver) -> Maneuver:

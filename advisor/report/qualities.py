@@ -134,7 +134,7 @@ MODES: Mapping[str, tuple[str, str]] = {
     "roll_time_constant": ("roll time constant", "s"),
     "spiral_pole": ("spiral pole", "1/s"),
 }
-"""Name and unit for people of each field of `LateralModes`."""
+"""Name and unit for people of each quantity of a mode."""
 MODE_NAMES = {"dutch_roll": "Dutch roll", "roll": "roll", "spiral": "spiral"}
 OPTIONAL = frozenset({"Y_p", "Y_r", "Y_delta_a"})
 """Derivatives that count as zero if the aircraft file states all other derivatives."""
@@ -142,8 +142,8 @@ OPTIONAL = frozenset({"Y_p", "Y_r", "Y_delta_a"})
 
 def mode_facts(state: LateralState) -> list[Fact]:
     """Return frequency, damping, time constant and pole of the modes in the joint estimate."""
-    modes, source = state.model.modes if state.model else None, joint_source(state)
-    rows = ((m, named) for name, named in MODES.items() if (m := getattr(modes, name, None)) is not None)
+    modes, source = state.model.modes if state.model else {}, joint_source(state)
+    rows = ((modes[name], named) for name, named in MODES.items() if name in modes)
     return [fact_of(name, source, m.value, m.std, unit) for m, (name, unit) in rows]
 
 

@@ -13,8 +13,8 @@ from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft.sensors import Alpha, Beta
 from advisor.aircraft.standard_gravity import GRAVITY_M_S2
 from advisor.library import estimate
-from advisor.oem.axes.lateral.estimate import LateralEstimate
-from advisor.oem.axes.lateral.estimator import estimate_lateral
+from advisor.model.axes.lateral import LATERAL
+from advisor.oem.axis.estimator import AxisEstimate, estimate_axis
 from advisor.oem.estimate import Estimate, NoEstimate
 from advisor.process.arrays import FloatArray
 from benchmarks.public.linear import FACTORS, FREE, REFERENCE_M_S, ROWS
@@ -33,7 +33,7 @@ class Advised:
     """The advisor's estimates of both axes."""
 
     pitch: Estimate
-    side: LateralEstimate
+    side: AxisEstimate
 
     @property
     def untold(self) -> tuple[str, ...]:
@@ -59,7 +59,7 @@ def advised(train: Sequence[Segment]) -> Advised | NoEstimate:
             by_control["elevator" if moved == "elevator" else "side"].append(segment)
     flown = {name: [maneuver_of(s, n) for n, s in enumerate(some, 1)] for name, some in by_control.items()}
     pitch = estimate(flown["elevator"], AIRCRAFT)
-    side = estimate_lateral(flown["side"], AIRCRAFT)
+    side = estimate_axis(LATERAL, flown["side"], AIRCRAFT)
     if isinstance(pitch, NoEstimate):
         return pitch
     return side if isinstance(side, NoEstimate) else Advised(pitch, side)

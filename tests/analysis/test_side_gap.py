@@ -15,7 +15,7 @@ STATE = SimpleNamespace(lateral=SimpleNamespace(model="as logged"))
 
 @pytest.fixture
 def compared(monkeypatch):
-    """Return what ``compare_side`` is given, with manoeuvres and simulators made by hand."""
+    """Return what ``compare_axis`` is given, with manoeuvres and simulators made by hand."""
     seen = SimpleNamespace(closed=0, specification=None)
 
     def close():
@@ -32,7 +32,7 @@ def compared(monkeypatch):
 
     monkeypatch.setattr(side_gap, "read_whole", lambda *_, **__: SimpleNamespace(state=STATE))
     monkeypatch.setattr(side_gap, "accepted_of", lambda _: ["as flown"])
-    monkeypatch.setattr(side_gap, "compare_side", compare)
+    monkeypatch.setattr(side_gap, "compare_axis", compare)
     monkeypatch.setattr(side_gap, "simulator_of", named)
     monkeypatch.setattr(
         side_gap, "side_without_difference", lambda flown, *_: (["beside"], Aircraft(model={"L_p": -1.0}))
@@ -69,7 +69,7 @@ def test_a_simulator_that_refuses_is_closed_too(compared, monkeypatch):
 
 def test_the_derivatives_of_a_simulators_log_are_its_numbers(compared, monkeypatch, tmp_path):
     found = SimpleNamespace(theta=np.arange(15.0), not_identifiable={"Y_beta": "still"}, airspeed_m_s=30.0)
-    monkeypatch.setattr(side_gap, "estimate_lateral", lambda *_: found)
+    monkeypatch.setattr(side_gap, "estimate_axis", lambda *_: found)
     log = tmp_path / "simulated.tlog"
     log.touch()
     side_gap.compare_side_flown(STATE, Aircraft(simulator=f"log:{log}"))

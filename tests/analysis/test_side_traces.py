@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 
 from advisor.analysis.axes.side_comparison import side_traces
-from advisor.gap.axes.lateral import diagnosis
+from advisor.gap.axis import diagnosis
 from advisor.gap.result import Trace
-from tests.gap.axes.lateral.test_diagnosis import FOUND
+from tests.gap.axis.test_diagnosis import FOUND
 
 T = np.arange(4.0)
 MEASURED = np.array([0.0, 0.1, 0.2, 0.1, 0.0, -0.1, -0.2, -0.1])

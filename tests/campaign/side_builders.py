@@ -11,10 +11,9 @@ from advisor.decision.verdict import ManeuverVerdict, Reason
 from advisor.flight.maneuvers.maneuver import Maneuver, Span
 from advisor.flight.signals.record import Channel
 from advisor.model.axes.lateral import LATERAL, Trim
-from advisor.oem.axes.lateral.estimate import LateralEstimate
-from advisor.oem.axes.lateral.estimator import Errors, lateral_modes
+from advisor.oem.axis.estimator import AxisEstimate, Errors, modes_of
 from advisor.oem.estimate import ChannelFit
-from tests.oem.axes.lateral.builders import JET, vector
+from tests.oem.axis.builders import JET, vector
 
 T = np.arange(0.0, 10.0, 0.04)
 AIRCRAFT = Aircraft(name="jet", model=JET)
@@ -25,11 +24,13 @@ def estimate(*flown, percent=2.0, untold=None, fits=()):
     """Return an estimate of the jet with equal relative errors."""
     std = 0.01 * percent * np.maximum(np.abs(vector(JET)), 0.1)
     covariance = np.diag(std**2)
-    return LateralEstimate(
-        theta=vector(JET), covariance_cr=covariance, covariance=covariance, cost=1e-9, fits=fits,
-        iterations=3, not_identifiable=untold or {}, correlated=(), condition=1.0, airspeed_m_s=130.0,
-        names=LATERAL.names.reported, nuisances={}, flown=flown,
-        modes=lateral_modes(vector(JET), Errors(covariance, np.zeros((1, 15))), Trim(130.0)),
+    errors = Errors(covariance, np.zeros((1, 15)))
+    modes, _ = modes_of(LATERAL, vector(JET), errors, Trim(130.0).around)
+    return AxisEstimate(
+        axis=LATERAL, theta=vector(JET), covariance_cr=covariance, covariance=covariance,
+        common=0.0 * covariance, cost=1e-9, fits=fits, iterations=3, not_identifiable=untold or {},
+        correlated=(), condition=1.0, airspeed_m_s=130.0,
+        names=LATERAL.names.reported, nuisances={}, flown=flown, modes=modes,
     )  # fmt: skip
 
 

@@ -81,7 +81,7 @@ def test_instruments_that_fail_leave_the_model(monkeypatch):
 
 
 def test_a_lateral_manoeuvre_that_fails_leaves_the_other(monkeypatch):
-    monkeypatch.setattr(lateral_campaign, "estimate_lateral", breaking(lateral_campaign.estimate_lateral, 1))
+    monkeypatch.setattr(lateral_campaign, "estimate_axis", breaking(lateral_campaign.estimate_axis, 1))
     state = ended(wired())
     first, second = state.maneuvers
     assert not first.verdict.accepted

@@ -19,7 +19,7 @@ from advisor.flight.maneuvers.maneuver import Maneuver, Span
 from advisor.flight.signals.instrument_finding import InstrumentFinding
 from advisor.flight.signals.messages import Columns
 from advisor.mavlink.logs.logs import open_log
-from advisor.oem.axes.lateral.estimate import LateralEstimate
+from advisor.oem.axis.estimator import AxisEstimate
 from tests.campaign import side_builders
 from tests.heard import hear
 
@@ -177,7 +177,7 @@ def test_a_specific_force_that_stands_still_is_named_and_nothing_is_computed_fro
     assert told(together([maneuver], ())) == [("a_z_rate", True)]
 
 
-def lateral(aileron: float) -> LateralEstimate:
+def lateral(aileron: float) -> AxisEstimate:
     """A joint estimate of the jet whose aileron rolls with this moment, known to 2 %."""
     found = side_builders.estimate("aileron", "rudder")
     k = found.names.index("L_delta_a")

@@ -16,7 +16,7 @@ from advisor.cli.axes import lateral_gap
 from advisor.cli.group import advisor
 from advisor.simulators.compare import Compared
 from advisor.words.problems import UnusableInputError
-from tests.gap.axes.lateral.test_diagnosis import FOUND
+from tests.gap.axis.test_diagnosis import FOUND
 from tests.gap.test_report_screen import diagnosis
 
 

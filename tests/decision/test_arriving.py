@@ -87,7 +87,7 @@ def test_the_first_input_has_one_error_whoever_looks_how_often():
 
 def test_an_axis_whose_controls_rest_is_not_estimated(monkeypatch):
     estimated = []
-    monkeypatch.setattr(arriving_information, "estimate_lateral", lambda *_: estimated.append(1))
+    monkeypatch.setattr(arriving_information, "estimate_axis", lambda *_: estimated.append(1))
     information = ArrivingInformation(Aircraft(elevator=Elevator(lag_s=0.0)))
     state = LateralState((), FlightTestVerdict("information", "continue", "", None, 100.0, None, {}), None)
     found = followed(information, 13.0, state)

@@ -5,16 +5,19 @@ from math import log
 import pytest
 
 from advisor.decision.axes.lateral_requirements import lateral_levels
-from advisor.oem.axes.lateral.estimate import LateralModes
 from advisor.oem.flying_qualities import Quality
 
 BELOW, ABOVE = 1.0 - 1e-9, 1.0 + 1e-9
+NAMES = {
+    "dutch_roll_omega": "omega", "dutch_roll_zeta": "zeta", "roll_time_constant": "roll",
+    "spiral_pole": "pole",
+}  # fmt: skip
 GOOD = {"omega": 3.0, "zeta": 0.5, "roll": 0.5, "pole": -0.01}
 
 
 def modes(std=0.0, **changed):
     v = GOOD | changed
-    return LateralModes(*(Quality(v[name], std) for name in ("omega", "zeta", "roll", "pole")))
+    return {name: Quality(v[short], std) for name, short in NAMES.items()}
 
 
 def levels_of(mode, **changed):
@@ -85,6 +88,6 @@ def test_the_worst_mode_governs_and_the_intervals_say_which_levels_they_reach():
 
 
 def test_a_mode_that_is_not_told_has_no_level():
-    without = LateralModes(Quality(3.0, 0.0), Quality(0.5, 0.0), None, None)
+    without = {"dutch_roll_omega": Quality(3.0, 0.0), "dutch_roll_zeta": Quality(0.5, 0.0)}
     assert all(set(one.by_mode) == {"dutch_roll"} for one in lateral_levels(without))
-    assert lateral_levels(LateralModes(None, None, None, None)) == ()
+    assert lateral_levels({}) == ()

@@ -9,7 +9,7 @@ from advisor.decision.axes.lateral_requirements import (
     peak_roll_rate,
 )
 from advisor.model.axes.lateral import LATERAL, Trim, state_matrix
-from tests.oem.axes.lateral.builders import JET, vector
+from tests.oem.axis.builders import JET, vector
 
 TRIM = Trim(130.0, 0.07, 0.105)
 ABOVE, BELOW = 1.0 + 1e-9, 1.0 - 1e-9

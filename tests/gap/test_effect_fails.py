@@ -6,12 +6,12 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from advisor.gap.axes.lateral.flight import SideFlight
+from advisor.gap.axis.flight import SideFlight
 from advisor.gap.inference import pitch
 from advisor.gap.inference.pitch import PitchFlight
 from advisor.process.parts import FailedPart
 from advisor.report.gap_document import gap_document
-from tests.gap.axes.lateral.test_diagnosis import FOUND
+from tests.gap.axis.test_diagnosis import FOUND
 from tests.gap.test_report_screen import diagnosis, printed
 
 PLAY = FailedPart("pitch, effect actuator_backlash", "LinAlgError: Singular matrix")

@@ -15,7 +15,7 @@ from advisor.analysis import whole_flights
 from advisor.analysis.gap_flights import GapFlights
 from advisor.cli.axes import lateral_gap
 from advisor.gap import diagnose
-from advisor.gap.axes.lateral import comparison
+from advisor.gap.axis import comparison
 from advisor.session.diagnosis import GapTask
 from tests.campaign.side_builders import judged
 from tests.campaign.side_builders import state as side_state

@@ -5,22 +5,22 @@ from scipy.linalg import expm, expm_frechet
 from advisor.model.axes.lateral import LATERAL
 from advisor.model.axis_response import AxisGrid, respond_axis
 from advisor.model.response import respond
-from advisor.oem.axes.lateral.instruments import Nuisance
-from advisor.oem.axes.lateral.motion import LateralMotion
-from advisor.oem.axes.lateral.problem import ALL, CAUSES, OPEN, LateralProblem, assemble_lateral
+from advisor.oem.axis.motion import AxisMotion
+from advisor.oem.axis.parameter import Parameter
+from advisor.oem.axis.problem import AxisProblem, causes_of, lay_out
 from advisor.oem.extra import Prior
 from advisor.oem.problem import OutputErrorProblem, Record, assemble
 from advisor.oem.rows import Signal
-from tests.oem.axes.lateral.builders import JET, TRIM, aileron_doublet, flown, rudder_doublet, vector
+from tests.oem.axis.builders import JET, TRIM, aileron_doublet, flown, rudder_doublet, vector
 
 T = np.arange(0.0, 8.0, 0.025)
 INITIAL = (0.002, 0.01, -0.004, 0.05)
-KINDS = {"airspeed_excess": ("air", ""), "alpha_excess_rad": ("alpha", "")}
+OPEN = {"_".join(place): place for place in LATERAL.open}
 UNSEEN = np.empty((0, 2, 4))
 
 
 def responding(assembly, shared, local, sensitivities=False):
-    rows, width = len(assembly.z), ALL + len(OPEN) + len(CAUSES)
+    rows, width = len(assembly.z), LATERAL.count + len(OPEN) + len(LATERAL.inputs) + 1
     y, g = np.empty(rows), np.empty((rows if sensitivities else 0, width))
     assert respond_axis(assembly.grid, shared, local, y, g, UNSEEN)
     return y, g
@@ -31,7 +31,7 @@ def lateral():
     record = flown(JET, aileron=aileron_doublet(T), rudder=rudder_doublet(T), seconds=8.0, initial=INITIAL)
     local = np.zeros((1, len(LATERAL.names.local)))
     local[0, :3], local[0, 3:7] = list(TRIM.values()), INITIAL
-    return assemble_lateral(LateralProblem((record,), accelerometer_arm_m=0.0)), local
+    return lay_out(AxisProblem(LATERAL, (record,)), causes_of(LATERAL)), local
 
 
 def test_the_kernel_agrees_with_an_independent_integration(lateral):
@@ -58,17 +58,18 @@ def test_sensitivities_are_the_derivatives_of_the_outputs(lateral):
 
 
 @pytest.mark.parametrize("name", OPEN)
-def test_the_column_of_an_excess_is_the_slope_of_the_outputs(lateral, name):
+def test_the_column_of_an_open_number_is_the_slope_of_the_outputs(lateral, name):
     local = lateral[1]
     record = flown(JET, aileron=aileron_doublet(T), rudder=rudder_doublet(T), seconds=8.0, initial=INITIAL)
-    at = {"airspeed_excess": 0.03, "alpha_excess_rad": 0.02, "beta_arm_m": 1.5, "accelerometer_arm_m": 0.4}
+    at = dict(zip(LATERAL.open, (0.03, 0.02, 1.5, 0.4), strict=True))
+    problem, motion = AxisProblem(LATERAL, (record,), values=at), AxisMotion(LATERAL)
 
     def outputs(step):
-        problem = LateralProblem((record,), **{**at, name: at[name] + step})
-        return responding(assemble_lateral(problem), vector(JET), local)[0]
+        moved = motion.laid(problem.having(OPEN[name], at[OPEN[name]] + step))
+        return responding(moved, vector(JET), local)[0]
 
-    problem, excess = LateralProblem((record,), **at), Nuisance(*KINDS[name], Prior(0.0, 1.0))
-    answer = LateralMotion.respond(problem, assemble_lateral(problem), vector(JET), local, [excess])
+    excess = Parameter(OPEN[name], Prior(0.0, 1.0))
+    answer = motion.respond(problem, motion.laid(problem), vector(JET), local, [excess])
     slope = (outputs(1e-5) - outputs(-1e-5)) / 2e-5
     column = answer.columns()[:, 0]
     assert np.max(np.abs(column - slope)) < 1e-5 * np.max(np.abs(slope))
@@ -78,7 +79,7 @@ def test_the_motion_has_the_states_and_their_rates(lateral):
     assembly, local = lateral
     events = len(assembly.grid.step_s)
     y, motion = np.empty(len(assembly.z)), np.empty((events, 2, 4))
-    assert respond_axis(assembly.grid, vector(JET), local, y, np.empty((0, 27)), motion)
+    assert respond_axis(assembly.grid, vector(JET), local, y, np.empty((0, LATERAL.count)), motion)
     np.testing.assert_array_equal(motion[assembly.grid.row[0] >= 0, 0, 1], y[assembly.rows[0]["p"]])
     by_difference = np.gradient(motion[:, 0], 0.025, axis=0)
     free = slice(220, 300)
@@ -146,4 +147,4 @@ def test_a_model_that_runs_away_is_no_response(lateral):
     assembly, local = lateral
     wild = vector(JET | {"L_p": 80.0})
     y = np.empty(len(assembly.z))
-    assert not respond_axis(assembly.grid, wild, local, y, np.empty((0, 27)), UNSEEN)
+    assert not respond_axis(assembly.grid, wild, local, y, np.empty((0, LATERAL.count)), UNSEEN)

@@ -10,14 +10,14 @@ from advisor.flight.elevator.elevator_sign import turned
 from advisor.flight.maneuvers.maneuver import CONTROLS, Maneuver
 from advisor.flight.vehicle.surfaces import Scale
 from advisor.model.axes.lateral import LATERAL
-from advisor.oem.axes.lateral.problem import LateralProblem, assemble_lateral
+from advisor.oem.axis.problem import AxisProblem, lay_out
 from advisor.oem.estimate import Estimate
 from advisor.oem.estimator import estimate
 from advisor.oem.prepare import signal_of
 from advisor.oem.rows import Signal
 from advisor.oem.surface import Servo
 from tests.flights import TWO, recorded
-from tests.gap.axes.lateral.test_setting import AILERON
+from tests.gap.axis.test_setting import AILERON
 from tests.heard import Heard, hear_log
 from tests.oem.builders import UAV
 from tests.oem.test_instruments import SPEED, equipped
@@ -94,7 +94,7 @@ def test_in_roll_and_yaw_the_aileron_begins_where_its_servo_is() -> None:
     begun = replace(AILERON, inputs={"aileron": record}, before={"aileron": early})
     first = []
     for one in (begun, replace(AILERON, inputs={"aileron": aileron})):
-        laid = assemble_lateral(LateralProblem((one,), servos={"aileron": Servo(LAG_S)}))
+        laid = lay_out(AxisProblem(LATERAL, (one,), values={("aileron", "lag_s"): LAG_S}))
         first.append(laid.grid.inputs[:, LATERAL.inputs.index("aileron")])
     assert first[0][-1] == pytest.approx(first[1][-1], abs=1e-9)
     assert first[0][0] == pytest.approx(first[1][0], abs=1e-9)

@@ -7,8 +7,8 @@ from advisor.aircraft.aircraft import Aircraft
 from advisor.oem.equation_error import equation_error, lateral_equation_error
 from advisor.oem.prepare import Prepared, prepare
 from advisor.oem.surface import Servo
-from tests.oem.axes.lateral.builders import JET as SIDE_JET
-from tests.oem.axes.lateral.builders import both_inputs
+from tests.oem.axis.builders import JET as SIDE_JET
+from tests.oem.axis.builders import both_inputs
 from tests.oem.builders import JET, by_name, flown
 
 

@@ -11,8 +11,8 @@ from advisor.aircraft.sensors import Alpha, Beta
 from advisor.decision.axes.influences import carries_coupling
 from advisor.flight.maneuvers.maneuver import InputKind, Maneuver
 from advisor.flight.maneuvers.sines import between_samples, command_of
-from advisor.oem.axes.lateral.estimate import LateralEstimate
-from advisor.oem.axes.lateral.estimator import estimate_lateral
+from advisor.model.axes.lateral import LATERAL
+from advisor.oem.axis.estimator import AxisEstimate, estimate_axis
 from advisor.oem.estimate import Estimate
 from advisor.oem.estimator import estimate
 from advisor.oem.known_instruments import with_found
@@ -94,7 +94,7 @@ def test_a_manoeuvre_of_steps_takes_what_inputs_at_once_have_told_of_its_instrum
 @pytest.mark.study
 def test_a_roll_faster_than_its_servo_is_not_exchanged_with_the_servo(tmp_path: Path) -> None:
     body, heard = _flown(0, 5101, 0.1, tmp_path / "flight.tlog")
-    found = estimate_lateral(heard.sideways[:1], VANE)
-    assert isinstance(found, LateralEstimate)
+    found = estimate_axis(LATERAL, heard.sideways[:1], VANE)
+    assert isinstance(found, AxisEstimate)
     assert body.derivatives(body.speed)["L_p"] < -3.0 / 0.1
     assert found.value("L_p") == pytest.approx(body.derivatives(found.airspeed_m_s)["L_p"], rel=0.05)

@@ -10,9 +10,10 @@ from advisor.aircraft.controls import Elevator
 from advisor.aircraft.reference import PARAMETERS
 from advisor.aircraft.sensors import Accelerometer, Alpha
 from advisor.flight.signals.record import Channel
+from advisor.model.axes.lateral import LATERAL
 from advisor.oem.airspeed import airspeed
-from advisor.oem.axes.lateral.instruments import nuisances_of
-from advisor.oem.axes.lateral.problem import LateralProblem
+from advisor.oem.axis.parameter import parameters_of
+from advisor.oem.axis.problem import AxisProblem
 from advisor.oem.estimate import Estimate, InstrumentEstimate, NoEstimate
 from advisor.oem.estimator import estimate, estimate_jointly
 from advisor.oem.extra import Prior
@@ -22,8 +23,8 @@ from advisor.oem.prepare import prepare
 from advisor.oem.problem import OutputErrorProblem, Record
 from advisor.oem.rows import Signal
 from advisor.oem.surface import Servo
-from tests.oem.axes.lateral.builders import JET, aileron_doublet
-from tests.oem.axes.lateral.builders import flown as flown_sideways
+from tests.oem.axis.builders import JET, aileron_doublet
+from tests.oem.axis.builders import flown as flown_sideways
 from tests.oem.builders import UAV, elevator_3211, flown, maneuver, simulate, trim_alpha, trim_elevator
 
 SPEED = 25.0
@@ -349,8 +350,8 @@ def test_a_lag_that_the_file_leaves_open_has_one_prior_on_every_axis():
     prepared = prepare([equipped(lag_s=0.1, noise=0.02)], Aircraft(airspeed_m_s=SPEED))
     pitch = {x.name: x.prior for x in unknown_instruments(prepared.problem, Aircraft(airspeed_m_s=SPEED))}
     doublet = flown_sideways(JET, aileron=aileron_doublet(np.arange(0.0, 15.0, 0.025)))
-    rolled = LateralProblem((doublet,), servos={"aileron": Servo()})
-    roll = {x.name: x.prior for x in nuisances_of(rolled, Aircraft())}
+    rolled = AxisProblem(LATERAL, (doublet,))
+    roll = {x.name: x.prior for x in parameters_of(rolled, Aircraft())}
     assert pitch["servo_lag_s"] == roll["aileron_lag_s"] == Prior(0.05, 0.05)
 
 

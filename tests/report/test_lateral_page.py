@@ -16,8 +16,8 @@ from advisor.report.page.headline import headline
 from advisor.report.table import Table
 from tests.campaign.side_builders import AIRCRAFT, estimate, judged, state
 from tests.campaign.states import changed
-from tests.gap.axes.lateral.test_diagnosis import FOUND
-from tests.oem.axes.lateral.builders import JET
+from tests.gap.axis.test_diagnosis import FOUND
+from tests.oem.axis.builders import JET
 from tests.schemas import breaches
 from tests.tui import flights as flights_of_pitch
 

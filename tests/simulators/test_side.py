@@ -15,9 +15,9 @@ from advisor.simulators.axes.side_difference import side_without_difference
 from advisor.simulators.fmu import FmuSimulator
 from advisor.simulators.protocol import Replay
 from advisor.words.problems import UnusableInputError
-from tests.gap.axes.lateral import test_comparison as flights
-from tests.oem.axes.lateral import builders
-from tests.oem.axes.lateral.builders import JET
+from tests.gap.axis import test_comparison as flights
+from tests.oem.axis import builders
+from tests.oem.axis.builders import JET
 from tests.simulators.small_fmu import SIDE, build
 from tests.simulators.test_fmu import NAMES
 

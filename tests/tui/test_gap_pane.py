@@ -18,7 +18,7 @@ from tests.analysis.test_side_traces import ANSWERED
 from tests.campaign.side_builders import judged as side_judged
 from tests.campaign.side_builders import state as side_state
 from tests.campaign.states import changed
-from tests.gap.axes.lateral.test_diagnosis import FOUND
+from tests.gap.axis.test_diagnosis import FOUND
 from tests.gap.test_report_answer import DERIVATIVES
 from tests.gap.test_report_screen import EVIDENCE, diagnosis
 from tests.tui import flights

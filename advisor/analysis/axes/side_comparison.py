@@ -12,10 +12,11 @@ from advisor.aircraft.reference import SIDE_PARAMETERS
 from advisor.analysis.whole_flights import read_whole
 from advisor.campaign.state import CampaignState
 from advisor.flight.maneuvers.maneuver import Maneuver
-from advisor.gap.axes.lateral.comparison import compare_side
+from advisor.gap.axis.comparison import compare_axis
 from advisor.gap.inference.prior import FIELD, FieldPrior
 from advisor.gap.result import Diagnosis, Trace
-from advisor.oem.axes.lateral.estimator import estimate_lateral
+from advisor.model.axes.lateral import LATERAL
+from advisor.oem.axis.estimator import estimate_axis
 from advisor.oem.estimate import Estimate, NoEstimate
 from advisor.simulators.axes.side_difference import side_without_difference
 from advisor.simulators.flying import Progress
@@ -53,7 +54,7 @@ def compare_side_flown(
     progress("comparing", 1.0)
     assert state.lateral is not None
     as_logged = compared is accepted and against is aircraft
-    diagnosis = answered(compare_side(compared, against, prior, state.lateral.model, as_logged))
+    diagnosis = answered(compare_axis(LATERAL, compared, against, prior, state.lateral.model, as_logged))
     diagnosis = replace(diagnosis, traces=side_traces(diagnosis.traces, accepted, compared))
     return SideCompared(diagnosis, state, aircraft, accepted)
 
@@ -125,7 +126,7 @@ def _identified(log: Path, aircraft: Aircraft) -> Aircraft:
     if not log.is_file():
         raise ConfigurationError(f"--simulator log:{log}: there is no such file; name the simulator's log.")
     flown = accepted_of(read_whole([log], aircraft, no_marks=True, axis="lateral").state)
-    estimate = answered(estimate_lateral(flown, aircraft))
+    estimate = answered(estimate_axis(LATERAL, flown, aircraft))
     return with_derivatives(aircraft, estimate, estimate.airspeed_m_s)
 
 

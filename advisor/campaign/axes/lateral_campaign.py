@@ -17,8 +17,7 @@ from advisor.decision.history import CandidateManeuver
 from advisor.decision.verdict import FlightTestVerdict
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.model.axes.lateral import LATERAL
-from advisor.oem.axes.lateral.estimate import LateralEstimate
-from advisor.oem.axes.lateral.estimator import JointSearch, estimate_lateral
+from advisor.oem.axis.estimator import AxisEstimate, JointSearch, estimate_axis
 from advisor.process.parts import Parts
 from advisor.words.problems import Problem
 
@@ -43,13 +42,13 @@ class LateralCampaign(AxisCampaign):
         self._advises = advises
         self._state: LateralState | None = None
         self._unknown: Problem | None = None
-        self._joint: tuple[tuple[int, ...], LateralEstimate | None] | None = None
+        self._joint: tuple[tuple[int, ...], AxisEstimate | None] | None = None
         self._search = JointSearch()
         plan = replace(aircraft.campaign, rule="information", parameters=tuple(JUDGED))
         super().__init__("lateral", aircraft, plan, parts)
 
     def _examined(self, maneuver: Maneuver) -> CandidateManeuver:
-        estimate = estimate_lateral([maneuver], self._aircraft)
+        estimate = estimate_axis(LATERAL, [maneuver], self._aircraft)
         return CandidateManeuver(
             estimate,
             judge("lateral", maneuver, estimate, self._aircraft),
@@ -88,7 +87,7 @@ class LateralCampaign(AxisCampaign):
         joint = (self._advises or self._ended) and self._may_stop
         return self._by(self._joint_estimate if joint else None, heard)
 
-    def _by(self, joint: LateralEstimate | None, heard: Sequence[Heard]) -> FlightTestVerdict:
+    def _by(self, joint: AxisEstimate | None, heard: Sequence[Heard]) -> FlightTestVerdict:
         return self._parts.make(
             "lateral, stop or continue",
             lambda: lateral_flight_test(
@@ -123,15 +122,15 @@ class LateralCampaign(AxisCampaign):
         return moved >= set(self._controls) and not any(item.stops for item in self._still_heard)
 
     @property
-    def _told(self) -> list[LateralEstimate | None]:
+    def _told(self) -> list[AxisEstimate | None]:
         """Lateral estimate of every manoeuvre; None for a manoeuvre that is not accepted."""
         return [
-            m.estimate if m.verdict.accepted and isinstance(m.estimate, LateralEstimate) else None
+            m.estimate if m.verdict.accepted and isinstance(m.estimate, AxisEstimate) else None
             for m in self.judged
         ]
 
     @property
-    def _joint_estimate(self) -> LateralEstimate | None:
+    def _joint_estimate(self) -> AxisEstimate | None:
         """Joint estimate, computed once for the same manoeuvres; None without accepted manoeuvres."""
         joined = self._joined()
         if self._joint is None or self._joint[0] != joined:
@@ -140,10 +139,10 @@ class LateralCampaign(AxisCampaign):
             search = None if self._ended else self._search
             joint = self._parts.make(
                 "lateral, joint estimate",
-                lambda: estimate_lateral(maneuvers, self._aircraft, search),
+                lambda: estimate_axis(LATERAL, maneuvers, self._aircraft, search),
                 untold,
             )
-            self._joint = joined, joint if isinstance(joint, LateralEstimate) else None
+            self._joint = joined, joint if isinstance(joint, AxisEstimate) else None
         return self._joint[1]
 
     def _joined(self) -> tuple[int, ...]:

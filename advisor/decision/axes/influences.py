@@ -15,7 +15,7 @@ from advisor.decision.axes.linear_motion import PITCH, SIDE, LinearMotion
 from advisor.decision.omitted import Influence, objections_to
 from advisor.decision.verdict import Reason
 from advisor.flight.maneuvers.maneuver import Maneuver
-from advisor.oem.axes.lateral.estimate import LateralEstimate
+from advisor.oem.axis.estimator import AxisEstimate
 from advisor.oem.estimate import Estimate
 from advisor.oem.instruments import COUPLING
 from advisor.process.arrays import FloatArray
@@ -42,7 +42,7 @@ def coupled(maneuver: Maneuver, estimate: Estimate, exceeded: Collection[str] = 
     return list(objections_to(influences, linear, estimate, PITCH_JUDGED))
 
 
-def side_coupled(maneuver: Maneuver, estimate: LateralEstimate, exceeded: Collection[str]) -> list[Reason]:
+def side_coupled(maneuver: Maneuver, estimate: AxisEstimate, exceeded: Collection[str]) -> list[Reason]:
     """Return a reason for each omitted influence that biases a derivative of roll or yaw beyond its 95 %
     interval.
 

@@ -22,7 +22,7 @@ import numpy as np
 from advisor.decision.held_inputs import held_response
 from advisor.model.axes.lateral import LATERAL, Trim, modes_of, state_matrix
 from advisor.model.mil_f_8785c import CATEGORIES, Category, LevelFound, Measured, Range, assess
-from advisor.oem.axes.lateral.estimate import LateralModes
+from advisor.oem.flying_qualities import Quality
 from advisor.process.arrays import FloatArray
 
 SOURCE = "MIL-F-8785C, paragraphs 3.3.1.1 to 3.3.1.3"
@@ -72,7 +72,7 @@ class LateralLevels:
         )
 
 
-def lateral_levels(modes: LateralModes) -> tuple[LateralLevels, ...]:
+def lateral_levels(modes: Mapping[str, Quality]) -> tuple[LateralLevels, ...]:
     """Return the levels by group of classes and category; empty for an estimate without modes.
 
     The interval of ζ·ω is the product of both intervals' ends, which is wider than 95 %.
@@ -91,17 +91,17 @@ def lateral_levels(modes: LateralModes) -> tuple[LateralLevels, ...]:
     )
 
 
-def _values(modes: LateralModes) -> dict[Mode, list[Measured]]:
+def _values(modes: Mapping[str, Quality]) -> dict[Mode, list[Measured]]:
     """Return the parameters of each mode in the order of its limits."""
     values: dict[Mode, list[Measured]] = {}
-    zeta, omega = modes.dutch_roll_zeta, modes.dutch_roll_omega
+    zeta, omega = modes.get("dutch_roll_zeta"), modes.get("dutch_roll_omega")
     if zeta is not None and omega is not None:
         (low, high), (slow, fast) = zeta.ci95, omega.ci95
         product = zeta.value * omega.value, (low * slow, high * fast)
         values["dutch_roll"] = [(zeta.value, zeta.ci95), product, (omega.value, omega.ci95)]
-    if (roll := modes.roll_time_constant) is not None:
+    if (roll := modes.get("roll_time_constant")) is not None:
         values["roll"] = [(roll.value, roll.ci95)]
-    if (spiral := modes.spiral_pole) is not None:
+    if (spiral := modes.get("spiral_pole")) is not None:
         values["spiral"] = [(spiral.value, spiral.ci95)]
     return values
 

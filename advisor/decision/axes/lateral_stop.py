@@ -26,7 +26,7 @@ from advisor.decision.verdict import (
     RuleProgress,
 )
 from advisor.model.axes.lateral import CONTROLS, LATERAL
-from advisor.oem.axes.lateral.estimate import LateralEstimate
+from advisor.oem.axis.estimator import AxisEstimate
 from advisor.words.quantiles import NORMAL_95
 from advisor.words.quantities import symbol
 
@@ -46,7 +46,7 @@ NOT_FLOWN = "No test input of the aileron or the rudder has been flown."
 
 
 def shares_of(
-    joint: LateralEstimate | None, tolerance_percent: float, judged: Mapping[str, str] = JUDGED
+    joint: AxisEstimate | None, tolerance_percent: float, judged: Mapping[str, str] = JUDGED
 ) -> Mapping[str, float]:
     """Return each judged derivative's 95 % half-width, % of its tolerance; infinite if unknown.
 
@@ -70,14 +70,14 @@ def shares_of(
 class _SideTest:
     """The test of roll and yaw after its newest manoeuvre."""
 
-    history: Sequence[LateralEstimate | None]
-    joint: LateralEstimate | None
+    history: Sequence[AxisEstimate | None]
+    joint: AxisEstimate | None
     aircraft: Aircraft
     flown: Sequence[FlownInput]
     controls: Sequence[str]
 
     @cached_property
-    def accepted(self) -> list[LateralEstimate]:
+    def accepted(self) -> list[AxisEstimate]:
         """Estimates of the accepted manoeuvres."""
         return [estimate for estimate in self.history if estimate is not None]
 
@@ -186,8 +186,8 @@ class _SideTest:
 
 
 def lateral_flight_test(
-    history: Sequence[LateralEstimate | None],
-    joint: LateralEstimate | None,
+    history: Sequence[AxisEstimate | None],
+    joint: AxisEstimate | None,
     aircraft: Aircraft,
     flown: Sequence[FlownInput] = (),
     heard: Sequence[Heard] = (),

@@ -31,7 +31,7 @@ from advisor.decision.response import Response
 from advisor.decision.verdict import Reason
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.flight.signals.robust import rms
-from advisor.oem.axes.lateral.estimate import LateralEstimate
+from advisor.oem.axis.estimator import AxisEstimate
 from advisor.oem.estimate import Estimate, NoEstimate
 from advisor.oem.findings import findings_of
 from advisor.words.axes import AxisName
@@ -107,7 +107,7 @@ def responses_of(axis: AxisName, estimate: Estimate | NoEstimate) -> tuple[Respo
 
 def _moved(table: Requirements, estimate: Estimate | NoEstimate) -> tuple[str, ...]:
     """Return the controls of a test. Of several controls only an estimate tells which ones moved."""
-    if isinstance(estimate, LateralEstimate):
+    if isinstance(estimate, AxisEstimate):
         return estimate.flown
     return tuple(table.responses) if len(table.responses) == 1 else ()
 
@@ -158,7 +158,7 @@ def _of_pitch(x: Examined, estimate: Estimate) -> Examined:
 
 def _of_side(x: Examined, estimate: Estimate) -> Examined:
     """Add what an estimate of roll and yaw makes needless, and what its model lacks."""
-    assert isinstance(estimate, LateralEstimate)
+    assert isinstance(estimate, AxisEstimate)
     needless: tuple[str, ...] = ()
     if {"q", "alpha", "theta", "airspeed"} <= x.maneuver.channels.keys():
         needless = ("bank", "elevator", "coupling", *(("airspeed",) if estimate.scales_with_speed else ()))
@@ -200,11 +200,11 @@ def _pitching(maneuver: Maneuver) -> list[Reason]:
     return [Reason("coupling", text, max(shares), COUPLING)]
 
 
-def _modes_alone(maneuver: Maneuver, estimate: LateralEstimate) -> tuple[Reason, ...]:
+def _modes_alone(maneuver: Maneuver, estimate: AxisEstimate) -> tuple[Reason, ...]:
     """Return a reason if the Dutch roll frequency, the only result of a record, is too uncertain."""
     if maneuver.span.kind == "other":
         return (_TRIMMING,)
-    omega = estimate.modes.dutch_roll_omega
+    omega = estimate.modes.get("dutch_roll_omega")
     width = 100.0 * NORMAL_95 * omega.std / omega.value if omega is not None else math.inf
     text = "the Dutch roll's frequency is known to {} % only (limit {}); use more rudder"
     return tuple(above("information", width, WIDEST_PREDICTION_PERCENT, text))

@@ -19,7 +19,7 @@ from advisor.decision.inputs import StepInput
 from advisor.decision.verdict import INFORMATION_LIMIT_PERCENT, NextInput, Reason
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.model.axes.lateral import LATERAL
-from advisor.oem.axes.lateral.estimate import LateralEstimate
+from advisor.oem.axis.estimator import AxisEstimate
 from advisor.oem.estimate import Estimate, NoEstimate
 
 
@@ -66,7 +66,7 @@ def _amplitude(maneuver: Maneuver, name: str) -> float:
 def next_lateral(
     control: str,
     percent: float,
-    accepted: Sequence[LateralEstimate],
+    accepted: Sequence[AxisEstimate],
     flown: Sequence[FlownInput],
     aircraft: Aircraft,
     holding_back: str,

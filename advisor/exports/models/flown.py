@@ -22,8 +22,8 @@ from advisor.exports.models.improvement import (
 from advisor.flight.instruments.atmosphere import AirData, air_flown
 from advisor.gap.result import Diagnosis, Value
 from advisor.model.axes.lateral import LATERAL, Trim
-from advisor.oem.axes.lateral.estimate import LateralEstimate
-from advisor.oem.axes.lateral.solution import WITHOUT_FORCE
+from advisor.oem.axis.estimator import AxisEstimate
+from advisor.oem.axis.search import WITHOUT_FORCE
 from advisor.process.arrays import FloatArray
 from advisor.process.atomic_file import write_atomically
 from advisor.report.improved import file_content, improved_file, text_of
@@ -181,7 +181,7 @@ def side_flown(lateral: LateralState | None, aircraft: Aircraft) -> SideModel | 
     return side_of(model, trim_of(joined, model.airspeed_m_s), air, aircraft)
 
 
-def side_of(estimate: LateralEstimate, trim: Trim, air: AirData, aircraft: Aircraft) -> SideModel:
+def side_of(estimate: AxisEstimate, trim: Trim, air: AirData, aircraft: Aircraft) -> SideModel:
     """Return the roll and yaw model of an estimate, with the air speed and servos from its fit."""
     estimated = zip(SIDE_PARAMETERS, estimate.theta.tolist(), estimate.std.tolist(), strict=True)
     excess, _ = estimate.nuisances.get("airspeed_excess", (0.0, 0.0))
@@ -194,7 +194,7 @@ def side_of(estimate: LateralEstimate, trim: Trim, air: AirData, aircraft: Aircr
     )
 
 
-def _servo(estimate: LateralEstimate, control: str, aircraft: Aircraft) -> ExportedServo:
+def _servo(estimate: AxisEstimate, control: str, aircraft: Aircraft) -> ExportedServo:
     stated = getattr(aircraft, control)
     lag_s, _ = estimate.nuisances.get(f"{control}_lag_s", (stated.lag_s or 0.0, 0.0))
     return ExportedServo(delay_s=stated.delay_s or 0.0, lag_s=lag_s)

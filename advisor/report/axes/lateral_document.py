@@ -8,7 +8,7 @@ from advisor.aircraft.aircraft import Aircraft
 from advisor.campaign.state import JudgedManeuver, LateralState
 from advisor.decision.axes.lateral_requirements import GROUPS, SOURCE
 from advisor.model.mil_f_8785c import CATEGORIES, MANNED
-from advisor.oem.axes.lateral.estimate import LateralEstimate, LateralModes
+from advisor.oem.axis.estimator import AxisEstimate
 from advisor.oem.estimate import Estimate
 from advisor.report.axis_document import concluded, fitted, flown, with_intervals
 from advisor.report.qualities import levels_document, levels_of, mode_facts, tests_document, tests_of
@@ -24,7 +24,7 @@ def lateral_document(state: LateralState, aircraft: Aircraft) -> dict[str, Any]:
         "maneuvers": [_maneuver(judged) for judged in state.maneuvers],
         "flight_test": concluded(state.flight_test),
         "model": _model(model),
-        "modes": _modes(model.modes) if model else None,
+        "modes": _modes(model) if model else None,
         "levels": levels_document(levels_of(state)),
         "qualification": tests_document(tests_of(state, aircraft)),
         "not_identifiable": dict(model.not_identifiable) if model else {},
@@ -33,7 +33,7 @@ def lateral_document(state: LateralState, aircraft: Aircraft) -> dict[str, Any]:
 
 
 def _maneuver(judged: JudgedManeuver) -> dict[str, Any]:
-    estimate = judged.estimate if isinstance(judged.estimate, LateralEstimate) else None
+    estimate = judged.estimate if isinstance(judged.estimate, AxisEstimate) else None
     entry = flown(judged)
     del entry["record_from_boot_s"]
     return {
@@ -41,7 +41,7 @@ def _maneuver(judged: JudgedManeuver) -> dict[str, Any]:
         **entry,
         **fitted(estimate),
         "estimates": _told(estimate) if estimate else None,
-        "modes": _modes(estimate.modes) if estimate else None,
+        "modes": _modes(estimate) if estimate else None,
         "not_identifiable": dict(estimate.not_identifiable) if estimate else {},
     }
 
@@ -51,7 +51,7 @@ def _told(estimate: Estimate) -> dict[str, Any]:
     return {name: entry for name, entry in with_intervals(estimate).items() if "reason" not in entry}
 
 
-def _model(model: LateralEstimate | None) -> dict[str, Any] | None:
+def _model(model: AxisEstimate | None) -> dict[str, Any] | None:
     if model is None:
         return None
     return {
@@ -63,12 +63,16 @@ def _model(model: LateralEstimate | None) -> dict[str, Any] | None:
     }
 
 
-def _modes(modes: LateralModes) -> dict[str, Any]:
+def _modes(estimate: AxisEstimate) -> dict[str, Any]:
+    modes = estimate.modes
     return {
-        "dutch_roll": {"omega": _quality(modes.dutch_roll_omega), "zeta": _quality(modes.dutch_roll_zeta)},
-        "roll": {"time_constant": _quality(modes.roll_time_constant)},
-        "spiral": {"pole": _quality(modes.spiral_pole)},
-        "left_out": dict(modes.left_out),
+        "dutch_roll": {
+            "omega": _quality(modes.get("dutch_roll_omega")),
+            "zeta": _quality(modes.get("dutch_roll_zeta")),
+        },
+        "roll": {"time_constant": _quality(modes.get("roll_time_constant"))},
+        "spiral": {"pole": _quality(modes.get("spiral_pole"))},
+        "left_out": dict(estimate.modes_left_out),
     }
 
 

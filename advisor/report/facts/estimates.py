@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from math import isfinite, nan
 
 from advisor.campaign.state import CampaignState, JudgedManeuver, LateralState
-from advisor.oem.axes.lateral.estimate import LateralEstimate
+from advisor.oem.axis.estimator import AxisEstimate
 from advisor.oem.estimate import Estimate, TermEstimate
 from advisor.words.digits import decimals_for, maneuvers_said, signed, with_half
 from advisor.words.quantiles import NORMAL_95
@@ -149,7 +149,7 @@ def untold(estimate: Estimate) -> list[str]:
     for name, reason in estimate.not_identifiable.items():
         by_reason.setdefault(reason, []).append(symbol(name))
     sentences = [f"Not identifiable: {', '.join(names)}; {reason}." for reason, names in by_reason.items()]
-    left_out = estimate.modes.left_out if isinstance(estimate, LateralEstimate) else {}
+    left_out = estimate.modes_left_out if isinstance(estimate, AxisEstimate) else {}
     return sentences + [f"No {mode.replace('_', ' ')} mode: {why}." for mode, why in left_out.items()]
 
 

@@ -16,10 +16,10 @@ from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.gap.effects.actuator_lag import LAG
 from advisor.gap.effects.transport_delay import DELAY
 from advisor.model.axes.lateral import LATERAL
-from advisor.oem.axes.lateral.instruments import FIRST_LAG_S, Nuisance
-from advisor.oem.axes.lateral.prepare import prepare_lateral
-from advisor.oem.axes.lateral.problem import NEEDED, LateralProblem, LateralRecord
-from advisor.oem.axes.lateral.solution import lateral_not_identifiable, solve_lateral
+from advisor.oem.axis.parameter import FIRST_LAG_S, LARGEST_MOVE_S, LONGEST_LAG_S, Parameter
+from advisor.oem.axis.prepare import prepare
+from advisor.oem.axis.problem import COMMAND, AxisProblem, AxisRecord
+from advisor.oem.axis.search import not_identifiable, solve
 from advisor.oem.estimate import NoEstimate
 from advisor.oem.extra import Prior
 from advisor.oem.rows import Signal
@@ -63,7 +63,7 @@ def side_without_difference(
         The records cannot be used, or the simulator does not fly roll and yaw.
     """
     said = simulator.description
-    flown = prepare_lateral(maneuvers, aircraft)
+    flown = prepare(LATERAL, maneuvers, aircraft)
     if isinstance(flown, NoEstimate):
         raise UnusableInputError(flown.code, flown.text, "Fly an aileron doublet and a rudder doublet.")
     _refuse_untaken(simulator, flown)
@@ -93,18 +93,18 @@ def side_without_difference(
     return kept, _file(surrogate, aircraft, said)
 
 
-def _condition(maneuver: Maneuver, record: LateralRecord, aircraft: Aircraft) -> Condition:
+def _condition(maneuver: Maneuver, record: AxisRecord, aircraft: Aircraft) -> Condition:
     """Return the steady flight before the first step, at zero height and in still air."""
 
     def mean(signal: Signal) -> float:
         before = signal.y[signal.t < maneuver.span.start_s]
         return float(np.mean(before)) if len(before) else float(signal.y[0])
 
-    path = mean(record.theta) - mean(record.alpha)
+    path = mean(record.known["theta"]) - mean(record.known["alpha"])
     return Condition(mean(record.airspeed), 0.0, path, aircraft.reference.mass_kg)
 
 
-def _inputs(maneuver: Maneuver, record: LateralRecord, aircraft: Aircraft) -> tuple[Inputs, FloatArray]:
+def _inputs(maneuver: Maneuver, record: AxisRecord, aircraft: Aircraft) -> tuple[Inputs, FloatArray]:
     """Return the recorded inputs as deviations, after the file's servos, and their stamps in the record."""
     begin = min(signal.t[0] for signal in record.outputs.values())
     end = max(signal.t[-1] for signal in record.outputs.values())
@@ -127,7 +127,7 @@ def _servo(control: SideControl) -> Servo:
     return Servo(control.lag_s or 0.0, control.delay_s or 0.0)
 
 
-def _as_record(replay: Replay, inputs: Inputs, t: FloatArray) -> LateralRecord:
+def _as_record(replay: Replay, inputs: Inputs, t: FloatArray) -> AxisRecord:
     """Return a replay as a record at the stamps of the inputs."""
 
     def read(series: FloatArray) -> Signal:
@@ -136,24 +136,25 @@ def _as_record(replay: Replay, inputs: Inputs, t: FloatArray) -> LateralRecord:
     motion: Mapping[str, FloatArray | None] = {
         name: getattr(replay, name) for name in ("p", "r", "bank", "a_y", "beta")
     }
-    return LateralRecord(
+    return AxisRecord(
         inputs={name: Signal(t, inputs.others[name]) for name in LATERAL.inputs if name in inputs.others},
         outputs={name: read(series) for name, series in motion.items() if series is not None},
-        airspeed=read(replay.airspeed_m_s),
-        alpha=read(replay.alpha),
-        theta=read(replay.theta),
-        q=read(replay.q),
+        known={
+            "airspeed": read(replay.airspeed_m_s),
+            "alpha": read(replay.alpha),
+            "theta": read(replay.theta),
+            "q": read(replay.q),
+        },
     )
 
 
-def _surrogate(records: tuple[LateralRecord, ...], flown: LateralProblem, said: str) -> Solution:
+def _surrogate(records: tuple[AxisRecord, ...], flown: AxisProblem, said: str) -> Solution:
     """Return the lateral model fitted to the replays, with lag and delay between input and surface."""
-    problem = LateralProblem(
-        records, flown.reference_airspeed_m_s, servos={name: Servo() for name in LATERAL.inputs}
-    )
+    problem = AxisProblem(LATERAL, records, flown.reference_airspeed_m_s)
     moving = [name for name in LATERAL.inputs if problem.flies(name)]
-    own = [Nuisance("command", "", OWN_DELAY), *(Nuisance("lag", name, OWN_LAG) for name in moving)]
-    solution = solve_lateral(problem, own)
+    lags = (Parameter((n, "lag_s"), OWN_LAG, LARGEST_MOVE_S, (0.0, LONGEST_LAG_S)) for n in moving)
+    own = [Parameter(COMMAND, OWN_DELAY, LARGEST_MOVE_S), *lags]
+    solution = solve(problem, own)
     if isinstance(solution, NoEstimate):
         raise UnusableInputError(
             "simulator_lateral",
@@ -165,14 +166,14 @@ def _surrogate(records: tuple[LateralRecord, ...], flown: LateralProblem, said: 
 
 def _file(surrogate: Solution, aircraft: Aircraft, said: str) -> Aircraft:
     """Return the aircraft file with the surrogate as its model, and with both servos in series."""
-    untold = lateral_not_identifiable(surrogate)
+    untold = not_identifiable(surrogate)
     estimated = zip(LATERAL.names.reported, surrogate.theta, strict=True)
     servos = {}
     for name in LATERAL.inputs:
         control = getattr(aircraft, name)
         delay_s = _beyond(surrogate, "command_delay_s", DELAY.smallest)
         # A command ahead of its stamps takes as much from a lag: the two act nearly alike.
-        early_s = min(surrogate.problem.command_delay_s, 0.0)
+        early_s = min(surrogate.problem.at(COMMAND), 0.0)
         lag_s = _beyond(surrogate, f"{name}_lag_s", LAG.smallest, early_s)
         servos[name] = replace(
             control,
@@ -195,7 +196,7 @@ def _beyond(surrogate: Solution, name: str, least: float, other_s: float = 0.0) 
     return value if value > max(least, NORMAL_95 * std) else 0.0
 
 
-def _refuse_untaken(simulator: Simulator, flown: LateralProblem) -> None:
+def _refuse_untaken(simulator: Simulator, flown: AxisProblem) -> None:
     """Refuse a simulator that does not support a control of the test."""
     for name in LATERAL.inputs:
         if flown.flies(name) and name not in simulator.takes:
@@ -208,7 +209,7 @@ def _refuse_untaken(simulator: Simulator, flown: LateralProblem) -> None:
 
 def _refuse_broken(replay: Replay, said: str, maneuver: Maneuver, duration_s: float) -> None:
     """Refuse a replay without roll and yaw, with an early end, or with a wrong sign or unit."""
-    missing = [name for name in NEEDED if getattr(replay, name) is None]
+    missing = [name for name in LATERAL.needed if getattr(replay, name) is None]
     if replay.a_y is None and replay.beta is None:
         missing.append("a_y (or beta)")
     if missing:
@@ -234,7 +235,7 @@ def _refuse_broken(replay: Replay, said: str, maneuver: Maneuver, duration_s: fl
         )
 
 
-def _refuse_wrong_control(surrogate: Solution, flown: LateralProblem, said: str) -> None:
+def _refuse_wrong_control(surrogate: Solution, flown: AxisProblem, said: str) -> None:
     """Refuse a simulator whose aileron or rudder has a wrong sign or unit."""
     derivatives = dict(zip(LATERAL.names.reported, map(float, surrogate.theta), strict=True))
     for name, (turns, against) in TURNS.items():

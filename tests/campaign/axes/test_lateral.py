@@ -16,7 +16,7 @@ from advisor.report.facts.decision import lateral_decision
 from advisor.report.result_rows import joint_table, maneuver_line
 from tests.flight.columns import Wire, heartbeat, plane_parameters
 from tests.heard import hear
-from tests.oem.axes.lateral.builders import JET, flown, steps
+from tests.oem.axis.builders import JET, flown, steps
 
 RATE_HZ = 25.0
 T = np.arange(0.0, 40.0, 1.0 / RATE_HZ)

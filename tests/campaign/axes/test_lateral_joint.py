@@ -24,7 +24,7 @@ def joint(monkeypatch: pytest.MonkeyPatch) -> list[int]:
         made.append(len(maneuvers))
         return estimate("aileron", "rudder", percent=30.0)
 
-    monkeypatch.setattr(lateral_campaign, "estimate_lateral", estimated)
+    monkeypatch.setattr(lateral_campaign, "estimate_axis", estimated)
     monkeypatch.setattr(lateral_campaign, "judge", lambda *_: ())
     return made
 
@@ -97,7 +97,7 @@ def test_an_exclusion_in_the_file_of_decisions_counts_for_roll_and_yaw(joint: li
 
 def test_a_stop_ends_where_a_manoeuvre_on_which_it_rests_is_excluded(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(
-        lateral_campaign, "estimate_lateral", lambda *_: estimate("aileron", "rudder", percent=2.0)
+        lateral_campaign, "estimate_axis", lambda *_: estimate("aileron", "rudder", percent=2.0)
     )
     monkeypatch.setattr(lateral_campaign, "judge", lambda *_: ())
     campaign = flown("rudder", "aileron")
@@ -114,7 +114,7 @@ def test_a_manoeuvre_that_contradicts_all_the_others_is_left_out_and_said(
     theta = [sound.theta + std * rng.standard_normal(len(std)) for _ in range(6)]
     theta[3] = theta[3] * 1.4
     estimates = iter([replace(sound, theta=one) for one in theta])
-    monkeypatch.setattr(lateral_campaign, "estimate_lateral", lambda *_: next(estimates, sound))
+    monkeypatch.setattr(lateral_campaign, "estimate_axis", lambda *_: next(estimates, sound))
     monkeypatch.setattr(lateral_campaign, "judge", lambda *_: ())
     monkeypatch.setattr(LateralCampaign, "_may_stop", False)
     campaign = flown(*["rudder", "aileron"] * 3)

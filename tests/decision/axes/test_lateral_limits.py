@@ -1,6 +1,5 @@
 """Limits of roll and yaw on both sides of their numbers, and parts that are missing."""
 
-from dataclasses import replace
 from math import pi
 
 import numpy as np
@@ -15,11 +14,10 @@ from advisor.decision.heard import Heard
 from advisor.flight.maneuvers.maneuver import Maneuver, Span
 from advisor.flight.signals.record import Channel
 from advisor.model.axes.lateral import Trim
-from advisor.oem.axes.lateral.estimate import LateralModes
 from advisor.oem.estimate import NoEstimate
 from advisor.oem.flying_qualities import Quality
 from tests.campaign.side_builders import estimate
-from tests.oem.axes.lateral.builders import JET, vector
+from tests.oem.axis.builders import JET, vector
 
 NONE = NoEstimate("singular", "nothing was told")
 W = 0.8 * pi
@@ -65,10 +63,12 @@ def test_a_control_that_was_not_recorded_has_not_moved(rudder: np.ndarray | None
 
 
 def test_a_dutch_roll_has_a_level_only_where_both_of_its_numbers_are_told() -> None:
-    whole = LateralModes(*(Quality(value, 0.0) for value in (3.0, 0.5, 0.5, -0.01)))
+    names = "dutch_roll_omega", "dutch_roll_zeta", "roll_time_constant", "spiral_pole"
+    whole = {name: Quality(value, 0.0) for name, value in zip(names, (3.0, 0.5, 0.5, -0.01), strict=True)}
     assert "dutch_roll" in lateral_levels(whole)[0].by_mode
     for part in ("dutch_roll_omega", "dutch_roll_zeta"):
-        assert "dutch_roll" not in lateral_levels(replace(whole, **{part: None}))[0].by_mode
+        others = {name: quality for name, quality in whole.items() if name != part}
+        assert "dutch_roll" not in lateral_levels(others)[0].by_mode
 
 
 def test_a_slow_roll_may_be_off_by_two_degrees_a_second() -> None:

@@ -19,7 +19,7 @@ from advisor.model.axes.lateral import Trim
 from advisor.words.problems import ConfigurationError
 from tests.campaign.side_builders import estimate
 from tests.exports.models.cases import REFERENCE, improvement
-from tests.oem.axes.lateral.builders import JET
+from tests.oem.axis.builders import JET
 
 SPEED, DENSITY = 130.0, 1.225
 RIGHT_ROLLS = SideControl(calibration=((1000.0, 20.0), (1500.0, 0.0), (2000.0, -20.0)))

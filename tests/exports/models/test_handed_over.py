@@ -18,8 +18,8 @@ from advisor.gap.inference.prior import FIELD
 from advisor.gap.result import Cause, Value
 from advisor.model.axes.lateral import LATERAL, Trim
 from tests.campaign.side_builders import estimate
-from tests.gap.axes.lateral.test_diagnosis import FOUND
-from tests.oem.axes.lateral.builders import JET
+from tests.gap.axis.test_diagnosis import FOUND
+from tests.oem.axis.builders import JET
 
 OWN = {name: Value(2.0 * value, 0.1) for name, value in JET.items()}
 
@@ -29,7 +29,7 @@ def handed(monkeypatch, simulator, causes) -> FlownModel:
     aircraft = Aircraft(simulator=simulator)
     side = side_of(estimate("aileron", "rudder"), Trim(130.0), STILL_AIR, aircraft)
     monkeypatch.setattr(handed_over, "flown_model", lambda *_: FlownModel(aircraft, None, side))
-    monkeypatch.setattr(handed_over, "estimate_lateral", lambda *_: estimate("aileron", "rudder"))
+    monkeypatch.setattr(handed_over, "estimate_axis", lambda *_: estimate("aileron", "rudder"))
     monkeypatch.setattr(handed_over, "accepted_of", lambda _: [])
     gap = replace(FOUND, model=OWN, causes=causes)
     return improved_side(SimpleNamespace(aircraft=aircraft, state=None, diagnosis=gap))

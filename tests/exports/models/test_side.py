@@ -24,7 +24,7 @@ from tests.campaign.side_builders import estimate
 from tests.exports.models.cases import air_at, improvement
 from tests.exports.models.test_jsbsim import placed, trimmed
 from tests.exports.models.test_matlab import OCTAVE, needs_octave
-from tests.oem.axes.lateral.builders import JET
+from tests.oem.axis.builders import JET
 
 JET_SIDE = side_of(estimate("aileron", "rudder"), Trim(130.0, 0.07, 0.105), STILL_AIR, Aircraft())
 ASKED = Request(53.0, 1000.0, powered=False, sideways=True)

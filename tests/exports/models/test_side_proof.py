@@ -14,9 +14,9 @@ from advisor.exports.models.axes.prove_side import _ahead, prove_side
 from advisor.exports.models.proof import NUMBERS, Proof, stays_of
 from advisor.gap.result import Diagnosis, Gap
 from advisor.oem.estimate import ChannelFit
-from tests.gap.axes.lateral.test_comparison import AIRCRAFT, TRUE, maneuvers
-from tests.gap.axes.lateral.test_diagnosis import FOUND
-from tests.oem.axes.lateral.builders import JET
+from tests.gap.axis.test_comparison import AIRCRAFT, TRUE, maneuvers
+from tests.gap.axis.test_diagnosis import FOUND
+from tests.oem.axis.builders import JET
 
 OFF = {"L_delta_a": 0.6 * JET["L_delta_a"], "N_delta_r": 1.5 * JET["N_delta_r"]}
 WEAK = replace(AIRCRAFT, model=TRUE | OFF)
@@ -58,8 +58,8 @@ def test_numbers_with_which_the_gap_grows_on_the_proof_are_taken_back(monkeypatc
     model = SimpleNamespace(theta=np.ones(15), fits=({},), airspeed_m_s=None)
     plain = Diagnosis(axis="lateral", verdict="parameters", sentence="", gap=Gap(), model={})
     asked = []
-    monkeypatch.setattr(side_proof, "estimate_lateral", lambda *_: model)
-    monkeypatch.setattr(side_proof, "compare_side", lambda _, one, __: asked.append(one) or plain)
+    monkeypatch.setattr(side_proof, "estimate_axis", lambda *_: model)
+    monkeypatch.setattr(side_proof, "compare_axis", lambda _, one, __: asked.append(one) or plain)
     improved = replace(AIRCRAFT, model=dict.fromkeys(SIDE_PARAMETERS, 1.0), simulator="linear")
     monkeypatch.setattr(side_proof, "with_derivatives", lambda *_: improved)
     monkeypatch.setattr(side_proof, "_gap", lambda _, __, ___, theta: after if np.all(theta == 1.0) else 2.0)
@@ -85,7 +85,7 @@ def test_the_gap_of_a_prediction_is_relative_to_the_noise_of_the_fit(monkeypatch
     t = np.arange(200.0)
     wrong = ChannelFit("p", t, 0.03 * (-1.0) ** t, np.zeros(200), 0.03)
     fitted = SimpleNamespace(fits=({"p": replace(wrong, noise=0.01)},))
-    monkeypatch.setattr(side_proof, "predicted_lateral", lambda *_: {"p": wrong})
+    monkeypatch.setattr(side_proof, "predicted", lambda *_: {"p": wrong})
     assert side_proof._gap(None, fitted, AIRCRAFT, np.ones(15)) == pytest.approx(8.0)
 
 

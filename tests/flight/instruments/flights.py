@@ -13,7 +13,7 @@ from advisor.flight.instruments.measured import pooled
 from advisor.flight.signals.instrument_finding import InstrumentFinding
 from advisor.flight.signals.record import Channel
 from advisor.oem.rows import Signal
-from tests.oem.axes.lateral.builders import JET, flown, rudder_doublet, steps
+from tests.oem.axis.builders import JET, flown, rudder_doublet, steps
 
 T = np.arange(0.0, 8.0, 0.02)
 SPEED = 20.0

@@ -15,7 +15,7 @@ from advisor.flight.maneuvers.marks import Mark
 from advisor.gap.effects import EFFECTS
 from advisor.gap.result import Cause, Diagnosis
 from advisor.model.axes.lateral import LATERAL
-from advisor.oem.axes.lateral.estimator import estimate_lateral
+from advisor.oem.axis.estimator import estimate_axis
 from advisor.oem.estimate import NoEstimate
 from advisor.words.problems import UnusableInputError
 
@@ -58,7 +58,7 @@ def improved_side(compared: SideCompared) -> FlownModel:
         side = replace(side, values={name: diagnosis.model[name] for name in side.values})
     elif servos:
         behind = _behind(servos, aircraft)
-        again = estimate_lateral(accepted_of(state), behind)
+        again = estimate_axis(LATERAL, accepted_of(state), behind)
         side = side if isinstance(again, NoEstimate) else side_of(again, side.trim, side.air, behind)
     beyond = tuple(cause.name.replace("_", " ") for cause in present if not _has_key(cause))
     return replace(model, side=replace(side, servos={**side.servos, **servos}, beyond_keys=beyond))

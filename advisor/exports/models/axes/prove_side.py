@@ -28,12 +28,10 @@ from advisor.exports.models.proof import (
 )
 from advisor.flight.instruments.atmosphere import air_flown
 from advisor.flight.maneuvers.maneuver import Maneuver
-from advisor.gap.axes.lateral.comparison import compare_side
+from advisor.gap.axis.comparison import compare_axis
 from advisor.gap.inference.prior import FIELD, FieldPrior
 from advisor.model.axes.lateral import LATERAL
-from advisor.oem.axes.lateral.estimate import LateralEstimate
-from advisor.oem.axes.lateral.estimator import estimate_lateral
-from advisor.oem.axes.lateral.prediction import predicted_lateral
+from advisor.oem.axis.estimator import AxisEstimate, estimate_axis, predicted
 from advisor.oem.estimate import NoEstimate
 from advisor.process.arrays import FloatArray
 from advisor.simulators.flying import Progress
@@ -62,10 +60,10 @@ def prove_side(
     """
     fitted, kept = (compared.maneuvers, fresh) if fresh is not None else parted(compared.maneuvers)
     fitted, against = beside_simulator(fitted, compared.aircraft, progress)
-    diagnosis = _flown(compare_side(fitted, against, prior))
+    diagnosis = _flown(compare_axis(LATERAL, fitted, against, prior))
     refuse_unimproved(diagnosis.improves, diagnosis.sentence, len(fitted))
     behind = behind_found(diagnosis, against)
-    plain, improved = (_flown(estimate_lateral(fitted, file)) for file in (against, behind))
+    plain, improved = (_flown(estimate_axis(LATERAL, fitted, file)) for file in (against, behind))
     present = tuple(cause.name for cause in diagnosis.causes if cause.present)
     parts = (*present, NUMBERS)
 
@@ -82,7 +80,7 @@ def prove_side(
         floor = {name: fit.noise for name, fit in model.fits[0].items()}
 
         def answer() -> tuple[str | None, str]:
-            again = _flown(compare_side(seen, there, prior))
+            again = _flown(compare_axis(LATERAL, seen, there, prior))
             return None if again.verdict == "untested" else again.verdict, again.sentence
 
         return Kept(float(np.mean([*gaps.values()])), gaps, floor, answer, left)
@@ -91,7 +89,7 @@ def prove_side(
 
 
 def _improved(
-    estimate: LateralEstimate,
+    estimate: AxisEstimate,
     against: Aircraft,
     servos: Aircraft,
     compared: SideCompared,
@@ -135,9 +133,9 @@ def _ahead(given: SideControl, against: SideControl, side_control: SideControl) 
     return given if side_control == against else replace(given, lag_s=less("lag_s"), delay_s=less("delay_s"))
 
 
-def _gap(maneuver: Maneuver, model: LateralEstimate, aircraft: Aircraft, theta: FloatArray) -> float:
+def _gap(maneuver: Maneuver, model: AxisEstimate, aircraft: Aircraft, theta: FloatArray) -> float:
     """Return the mean gap over outputs: mean square error over that of the noise, minus 1, at least 0."""
-    fits = predicted_lateral(maneuver, model, aircraft, theta)
+    fits = predicted(maneuver, model, aircraft, theta)
     if isinstance(fits, NoEstimate):
         return 0.0
     # The noise of a prediction is its own error, and tells no gap.

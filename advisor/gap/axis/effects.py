@@ -1,0 +1,174 @@
+"""Effects of an axis: those of the catalogue at its controls and instruments.
+
+Names, blocks, bounds, starts, least sizes and sentences are those of ``gap.effects``. A row adds the control
+or output, and the prior standard deviation of each parameter.
+"""
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+
+from advisor.gap.axis.setting import THROTTLE, Flown
+from advisor.gap.effects.accelerometer_offset import ARM
+from advisor.gap.effects.actuator_backlash import BACKLASH
+from advisor.gap.effects.actuator_deadband import DEADBAND_ABOUT_TRIM
+from advisor.gap.effects.actuator_lag import LAG
+from advisor.gap.effects.actuator_rate_limit import RATE_LIMIT
+from advisor.gap.effects.pitch_rate_scale import SCALE
+from advisor.gap.effects.thrust_moment import EFFECT as THRUST
+from advisor.gap.effects.thrust_moment import THROTTLE_MOVES
+from advisor.gap.effects.transport_delay import DELAY
+from advisor.gap.inference.sizes import width_of
+from advisor.gap.kit.effect import without_sizes
+from advisor.gap.kit.least import FILTERED_S
+from advisor.gap.kit.skew import skew_beyond
+from advisor.gap.kit.variant import Variant
+from advisor.gap.result import Unseen, spelled
+from advisor.model.axis import Axis, Place
+from advisor.oem.axis.problem import COMMAND
+from advisor.process.arrays import FloatArray
+from advisor.words.quantities import channel
+
+
+@dataclass(frozen=True, slots=True)
+class SideEffect:
+    """One effect at one control or output of an axis."""
+
+    of: str
+    """Control or output at which the effect acts; ``throttle`` for the propeller."""
+    variant: Variant
+    places: tuple[Place, ...]
+    """Entry of the simulator that each parameter of the effect sets."""
+    std: tuple[float, ...]
+    """Prior standard deviation of each parameter about zero, over all aircraft that have the effect. Where
+    the bounds exclude negative sizes, the prior is half of a Gaussian."""
+    words: Mapping[str, str] = field(default_factory=dict)
+    """Word of this axis for each word in the pitch axis' sentence."""
+    at_control: bool = False
+    """Whether the effect acts at a control, whose name its own name contains."""
+    columns: FloatArray | None = field(default=None, compare=False)
+    """(N, k) change of the outputs per unit of each parameter, where it is linear."""
+
+    @property
+    def named(self) -> str:
+        """Name of the effect in sentences: ``aileron actuator lag``, ``roll rate scale``."""
+        spoken = spelled(self.variant.effect)
+        for old, new in self.words.items():
+            spoken = spoken.replace(old, new)
+        return f"{self.of} {spoken}" if self.at_control else spoken
+
+    @property
+    def name(self) -> str:
+        """Name of the effect in documents: ``aileron_actuator_lag``, ``roll_rate_scale``."""
+        return self.named.replace(" ", "_")
+
+    def said(self, sentence: str) -> str:
+        """Return the pitch axis' sentence with the words of roll and yaw."""
+        for old, new in self.words.items():
+            if old in sentence:
+                return sentence.replace(old, new)
+        return sentence if not self.words else f"{self.of.capitalize()}: {sentence[0].lower()}{sentence[1:]}"
+
+    @property
+    def starts(self) -> tuple[tuple[float, ...], ...]:
+        """Sizes at which a search starts; empty if the outputs are linear in the size."""
+        return tuple(start for start in self.variant.starts if start[0])
+
+    @property
+    def sides(self) -> tuple[Place, tuple[float, ...]] | None:
+        """Parameter whose value differs by manoeuvre, with the values to choose from; None without one."""
+        return None if self.variant.sides is None else ((self.of, self.variant.sides[0]), (-1.0, 0.0, 1.0))
+
+
+_SERVO = (
+    (LAG, ("lag_s",)),
+    (DELAY, ("delay_s",)),
+    (RATE_LIMIT, ("slowness_s_rad",)),
+    (BACKLASH, ("half_play_rad",)),
+    (DEADBAND_ABOUT_TRIM, ("half_deadband_rad", "neutral_rad")),
+)
+"""Effects of a servo, each with its entries in the simulator."""
+_ARM_STD_M = 0.3
+"""Prior: standard deviation of the arm of an accelerometer or of a vane, m."""
+
+
+def block_of(axis: Axis, of: str) -> str:
+    """Return the block of an output, of the throttle or of all commands; any other name is a block itself."""
+    blocks = {output: block for block, output in axis.sensors.items()}
+    turned = next((t.state for t in axis.shared if t.factor == axis.propeller[0]), "")
+    by_state = {state: block for block, state in axis.equations.items()}
+    return {**blocks, "throttle": by_state.get(turned, ""), "command": "input"}.get(of, of)
+
+
+def side_effects(flown: Flown) -> Iterator[SideEffect]:
+    """Yield every effect that the records of a flight can show."""
+    axis, problem = flown.axis, flown.problem
+    controls = list(filter(problem.flies, axis.inputs))
+    for of in controls:
+        for variant, entries in _SERVO:
+            yield _sized(
+                of, variant, tuple((of, entry) for entry in entries), {"elevator": of}, at_control=True
+            )
+    if len(controls) > 1:
+        # A delay before the commands part delays all surfaces equally, and is one cause.
+        words = {"transport": "common transport", "command and surface": "all commands and surfaces"}
+        yield _sized("command", replace(DELAY, starts=()), (COMMAND,), words)
+    measured = set.intersection(*(set(record.outputs) for record in problem.records))
+    for of in filter(measured.__contains__, axis.readings):
+        spoken, skew, block = axis.readings[of]
+        words = dict.fromkeys(("pitch rate", "angle of attack"), spoken)
+        yield _sized(of, skew_beyond(skew, FILTERED_S), ((of, "delay_s"),), words)
+        if block:
+            yield _sized(of, replace(SCALE, block=block), ((of, "scale"),), {"pitch rate": spoken})
+    if axis.force in measured:
+        yield SideEffect(axis.force, ARM, ((axis.force, "arm_m"),), (_ARM_STD_M,))
+    if axis.vane in measured and flown.arm_is_stated:
+        vane = replace(ARM, effect="alpha_vane_offset", block="alpha_sensor")
+        yield SideEffect(axis.vane, vane, ((axis.vane, "arm_m"),), (_ARM_STD_M,))
+    if axis.propeller[0] and _throttle_moves(flown):
+        yield _propeller(*axis.propeller)
+
+
+def _sized(
+    of: str, variant: Variant, places: tuple[Place, ...], words: Mapping[str, str], at_control: bool = False
+) -> SideEffect:
+    """Return an effect with the prior widths of the pitch axis, whose servos and streams are the same."""
+    std = tuple(width_of(variant.effect, name) for name in variant.names)
+    return SideEffect(of, variant, places, std, words, at_control)
+
+
+def unseen(flown: Flown) -> Iterator[Unseen]:
+    """Yield the effects that the records cannot show."""
+    yield Unseen(
+        f"a constant error of {_outputs_said(flown)}",
+        "each manoeuvre has its own trim and biases",
+        "a reading of each instrument at rest",
+    )
+    for of in flown.axis.inputs:
+        if not flown.problem.flies(of):
+            yield Unseen(f"the servo of the {of}", f"the {of} is not flown", f"a doublet of the {of}")
+    if flown.axis.propeller[0] and not _throttle_moves(flown):
+        yield Unseen(
+            flown.axis.propeller[1], "the throttle stands still", "steps of the throttle in a manoeuvre"
+        )
+
+
+def _throttle_moves(flown: Flown) -> bool:
+    return any(t is not None and np.ptp(t.y) > THROTTLE_MOVES for t in flown.throttle)
+
+
+def _outputs_said(flown: Flown) -> str:
+    """Return the outputs besides the vane's angle in words: ``p, r, φ or the lateral acceleration``."""
+    axis = flown.axis
+    *symbols, last = (channel(name).symbol for name in axis.outputs if name not in (axis.hidden, axis.force))
+    named = [*symbols, last, f"the {axis.readings[axis.force][0]}"] if axis.force else [*symbols, last]
+    return " or ".join([", ".join(named[:-1]), named[-1]])
+
+
+def _propeller(control: str, said: str, sentence: str) -> SideEffect:
+    """Return the propeller's moment at full throttle as the equivalent deflection of a control."""
+    entry = f"{control}_rad"
+    torque = replace(ARM, effect="thrust_moment", block="moment_equation", names=(entry,), steps=(2e-4,))
+    words = dict.fromkeys(without_sizes(THRUST.said, ""), sentence)
+    return SideEffect(THROTTLE, torque, ((THROTTLE, entry),), (0.05,), {**words, "thrust moment": said})

@@ -1,0 +1,109 @@
+"""Laws of an axis without a name: surfaces that stop, stick or ring, and nonlinear curves.
+
+A curve is a disturbance of one block. The curve consists of x·|x| and x³, where x is a deflection, a state or
+a reading. The curve is symmetric to the left and to the right.
+"""
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from advisor.gap.axis.effects import SideEffect, block_of
+from advisor.gap.axis.fit import Fit
+from advisor.gap.axis.models import Case
+from advisor.gap.inference.sizes import BENT, of_range
+from advisor.gap.kit.variant import Variant
+from advisor.gap.uncatalogued.candidate_laws import RINGING, STOPS, SURFACE_STOP, sticking, stops
+from advisor.gap.verdict.missing_law import Lacking
+from advisor.model.axis import Axis
+from advisor.model.axis_response import respond_axis
+from advisor.oem.axis.disturbance import STEP_S, answered, courses_of
+from advisor.process.arrays import FloatArray
+
+_CURVE = Variant("curve", "", ("square", "cube"), ((0.0, 0.0),), (1.0, 1.0), ((-np.inf, np.inf),) * 2, 0.0)
+_LAG_AND_DAMPING = replace(
+    RINGING, names=("lag_s", "damping"), entries=("lag_s", "lag_damping"), apply_with=None,
+    starts=tuple((2.0 * damping / omega, damping) for omega, damping in RINGING.starts),
+    steps=(5e-4, 0.01), bounds=((0.0, 0.25), RINGING.bounds[1]),
+)  # fmt: skip
+"""Second-order servo: parameters of lag and damping, and their entries in the simulator."""
+
+
+def side_laws(case: Case, fit: Fit) -> Iterator[SideEffect]:
+    """Yield every law without a name that the records of a flight can show."""
+    axis, problem = case.axis, case.flown.problem
+    for of in filter(problem.flies, axis.inputs):
+        moved = np.concatenate(
+            [r.inputs[of].y - r.inputs[of].y[0] for r in problem.records if of in r.inputs]
+        )
+        most = max(float(np.max(np.abs(moved))), 1e-9)
+        for law in (*stops(SURFACE_STOP, of, STOPS, np.zeros(1), moved), sticking(most), _LAG_AND_DAMPING):
+            law = replace(law, block=of)
+            places = tuple((of, entry) for entry in law.entries or law.names)
+            yield SideEffect(
+                of, law, places, of_range(law), {law.effect: f"{of} {law.effect}"}, at_control=True
+            )
+    motions = [_motion(fit, m) for m in range(len(case.flown))]
+    sizes = case.prior_of(1.0, ()).precision ** -0.5
+    slopes = {(term.state, term.factor): x for term, x in zip(axis.shared, sizes, strict=True)}
+    for block in (*filter(problem.flies, axis.inputs), *(b for b in axis.sensors if b in motions[0])):
+        yield from _curves(case, fit, motions, block, {block: 1.0})
+    for block, state in axis.equations.items():
+        yield from _curves(case, fit, motions, block, {of: slopes[state, of] for of in axis.letters.values()})
+
+
+def lacking(case: Case, fit: Fit, block: str) -> Iterator[Lacking]:
+    """Yield what each manoeuvre shows of a law in an equation, beyond a fit."""
+    linear = fit.linear(case.flown)
+    for m, course in enumerate(courses_of(linear, block)):
+        rows, motion = fit.assembly.blocks[m], _motion(fit, m)
+        moved = {
+            name: np.interp(course.knots, motion["t"], motion[of])
+            for of, name in _formula_names(case.axis).items()
+        }
+        left = linear.unabsorbed(m, fit.residual[rows, None])
+        columns = (fit.weight[rows, None] * x for x in (course.columns, fit.columns[rows], left))
+        responses, shared, residual = columns
+        yield Lacking({**moved, "t": course.knots}, responses, shared, residual[:, 0])
+
+
+def _formula_names(axis: Axis) -> Mapping[str, str]:
+    """Return the name in a formula of each quantity on which a law may depend."""
+    return {state: state for state in axis.letters.values()} | {of: n for n, of in axis.controls.items()}
+
+
+def _curves(
+    case: Case, fit: Fit, motions: Sequence[Mapping[str, FloatArray]], block: str, slopes: Mapping[str, float]
+) -> Iterator[SideEffect]:
+    """Yield the nonlinear curves of a block, from the linear terms ``slopes``."""
+    most = {of: max(float(np.max(np.abs(motion[of]))) for motion in motions) + 1e-12 for of in slopes}
+    parts = []
+    for m, motion in enumerate(motions):
+        shares = [motion[of] / most[of] for of in slopes]
+        forms = np.column_stack([form for x in shares for form in (x * np.abs(x), x**3)])
+        parts.append(answered(fit.linear(case.flown), m, block, motion["t"], forms))
+    columns = np.vstack(parts)
+    for k, (of, slope) in enumerate(slopes.items()):
+        name, std = f"{block} curve of {of}", BENT * slope * most[of]
+        places = (name, "square"), (name, "cube")
+        forms, at_control = columns[:, 2 * k : 2 * k + 2], block in case.axis.inputs
+        yield SideEffect(block, _CURVE, places, (std, std), {"curve": name}, at_control, forms)
+
+
+def _motion(fit: Fit, m: int) -> Mapping[str, FloatArray]:
+    """Return the states, deflections and readings of a manoeuvre at equal time steps, controls minus trim."""
+    assembly, grid, axis = fit.assembly, fit.assembly.grid, fit.assembly.axis
+    events = slice(grid.first[m], grid.first[m + 1])
+    stamps = assembly.begin[m] + np.concatenate([[0.0], np.cumsum(grid.step_s[events][:-1])])
+    own = assembly.t[assembly.owner == m]
+    t = np.arange(np.min(own), np.max(own) + STEP_S, STEP_S)
+    course = np.empty((len(grid.step_s), 2, len(grid.initial)))
+    nothing = np.empty((0, fit.sensitivities.shape[1]))
+    respond_axis(grid, fit.point.theta, fit.point.local, np.empty(len(assembly.z)), nothing, course)
+    moves = dict(zip(axis.states, course[events, 0].T, strict=True))
+    moves |= {of: grid.inputs[events, k] - grid.inputs[events][0, k] for k, of in enumerate(axis.inputs)}
+    moved = {name: np.interp(t, stamps, y) for name, y in moves.items()}
+    for output, rows in assembly.rows[m].items():
+        moved[block_of(axis, output)] = np.interp(t, assembly.t[rows], fit.fitted[rows])
+    return {**moved, "t": t}

@@ -1,1 +1,0 @@
-"""Estimation problems of the axes other than pitch."""

@@ -1,1 +1,0 @@
-"""Estimation of roll and yaw: records, start, motion, instruments and estimate."""
