@@ -15,7 +15,7 @@ from advisor.gap.axes.lateral import diagnosis
 from advisor.gap.axes.lateral import flight as flight_of_side
 from advisor.gap.axes.lateral.diagnosis import _capped, diagnose_side, where_of
 from advisor.gap.axes.lateral.evidence import Squares
-from advisor.gap.axes.lateral.fit import Fit, Free
+from advisor.gap.axes.lateral.fit import Fit, Free, Point
 from advisor.gap.axes.lateral.flight import SideFlight, SideModel
 from advisor.gap.axes.lateral.measure import measured, sums
 from advisor.gap.axes.lateral.models import case_of
@@ -209,6 +209,65 @@ def test_an_effect_changes_what_a_late_command_does_so_that_its_slope_is_taken_a
     case = SimpleNamespace(stated=(), natural=(), fit=lambda at, free, **_: again.extend(free) or fit)
     SideFlight(case, fit, []).explained(SimpleNamespace(fit=fit, effect=None), 3)
     assert [one.column for one in again] == [None]
+
+
+class TwoOptima:
+    """A case with two plain fits, each the likelier one by ``heights`` at the temperature of one of them."""
+
+    stated, natural, flown = (), (), None
+
+    def __init__(self, heights):
+        self.heights = heights
+        self.fits = [
+            SimpleNamespace(
+                point=Point(np.zeros(1), np.zeros((1, 1)), {("rudder", "lag_s"): np.zeros(1)}),
+                free=(),
+                of=k,
+                share=share,
+                likelihood=1.0,
+            )
+            for k, share in enumerate((1.0, 0.5))
+        ]
+
+    def fit(self, at, free, tolerance=0.3, share=1.0):
+        self.fits.reverse()
+        return self.fits[0]
+
+    def prior_of(self, tolerance, free, share=1.0):
+        return SimpleNamespace(height=lambda fit: self.heights(fit, share))
+
+
+def searched(monkeypatch, heights):
+    """Return the plain model's fit after the search among two optima, and the parts that failed."""
+    case = TwoOptima(heights)
+    start = SimpleNamespace(name="lag", price=0.0, saved=0.0)
+    monkeypatch.setattr(flight_of_side, "colour_share", lambda fit, **_: fit.share)
+    monkeypatch.setattr(flight_of_side, "Starts", lambda *_: SimpleNamespace(of_each=[start]))
+    monkeypatch.setattr(flight_of_side, "base_of", lambda *_: np.zeros(1))
+    lag = SimpleNamespace(places=(("rudder", "lag_s"),))
+    monkeypatch.setattr(
+        SideFlight, "_model", lambda self, effect, fit, *_: replace(side_model(fit), effect=effect)
+    )
+    monkeypatch.setattr(
+        SideFlight, "_added", lambda self, start, at, *_: replace(side_model(at, 1.0), effect=lag)
+    )
+    side = SideFlight(case, case.fits[0], [])
+    _, (plain, *_) = side.explained(None, 1)
+    return plain.fit, side.parts.failed
+
+
+def test_two_plain_fits_are_compared_at_one_temperature_so_that_the_search_ends(monkeypatch):
+    """Each optimum is the likelier at the temperature of the other: two temperatures take turns for ever."""
+    fit, failed = searched(monkeypatch, lambda fit, share: 10.0 * (fit.share != share))
+    assert (fit.share, failed) == (0.5, ())
+
+
+def test_a_search_without_an_end_stops_and_is_reported(monkeypatch):
+    """Every other search finds something likelier still."""
+    heights = iter(range(0, 10000, 100))
+    _, (failed,) = searched(monkeypatch, lambda fit, share: -next(heights))
+    assert failed.part == flight_of_side.SEARCH
+    assert f"{flight_of_side.SEARCHES} searches" in str(failed.problem)
 
 
 @pytest.mark.parametrize(("right", "wrong", "fitted"), [(5.0, 0.0, False), (0.0, 5.0, True)])
