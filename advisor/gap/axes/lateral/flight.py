@@ -97,7 +97,7 @@ class SideFlight:
             begin = replace(base.fit, free=tuple(s._replace(column=None) for s in base.fit.free))
         # At two temperatures each of two optima may be the likelier: one serves all searches.
         share = colour_share(begin)
-        plain = begin if base is None else self.case.fit(begin.point, begin.free, share=share) or base.fit
+        plain = self.case.fit(begin.point, begin.free, share=share) or begin
         for _ in range(SEARCHES):
             everyone = self._each_about(plain, share, base, most)
             again = self._searched_again(everyone, share) if base is None else None
@@ -116,14 +116,14 @@ class SideFlight:
     def _each_about(self, plain: Fit, share: float, base: SideModel | None, most: int) -> list[SideModel]:
         """Return the plain model, and the models with each likely effect that begin there."""
         table = _beside(base, self.table)
-        starts = Starts(self.case, plain, table)
-        of_laws = Starts(self.case, plain, _beside(base, self.laws)).of_each
+        starts = Starts(self.case, plain, table, share=share)
+        of_laws = Starts(self.case, plain, _beside(base, self.laws), share=share).of_each
         chosen = [(s, plain, ERROR_IF_WRONG) for s in likeliest(starts.of_each, most)]
         chosen += [(s, plain, ERROR_IF_WRONG) for s in likeliest(of_laws, LAWS)]
         near = self._at_the_file(plain, share, base) if self.is_stated else None
         if near is not None:
             others = [effect for effect in table if effect.name not in {s.name for s, *_ in chosen}]
-            tight = Starts(self.case, near, others, ERROR_IF_RIGHT).of_each
+            tight = Starts(self.case, near, others, ERROR_IF_RIGHT, share).of_each
             chosen += [(s, near, ERROR_IF_RIGHT) for s in likeliest(tight, AT_THE_FILE)]
         models = (self._added(s, at, tolerance, plain, share) for s, at, tolerance in chosen)
         return [replace(self._model(None, plain, plain, share), starts=starts), *filter(None, models)]
@@ -191,7 +191,7 @@ class SideFlight:
         for lead in leads:
             for other in (starts[e.name] for e in _beside(lead, self.table) if e.name in starts):
                 price = looked.together(starts[lead.name], other)
-                if price < starts[lead.name].price - 2.0 * stage.heat * np.log(len(self.table)):
+                if price < starts[lead.name].price - 2.0 * np.log(len(self.table)):
                     yield price, lead.name, other.name
 
     def natural_nats(self, lead: SideModel, pair: SideModel) -> float:
