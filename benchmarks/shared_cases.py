@@ -1,5 +1,6 @@
 """Run ``advisor analyze`` on every log of ../shared/cases, and compare with ``tests/shared_cases.yaml``.
 
+A listed cause is asked of ``advisor gap`` of roll and yaw.
 Prints a line for each log. Ends with 1 where a case fails that the list does not call open, or where a log
 ends with another exit code than 0 or 3.
 """
@@ -7,7 +8,7 @@ ends with another exit code than 0 or 3.
 import json
 import subprocess
 import sys
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from functools import cache
 from pathlib import Path
@@ -18,15 +19,18 @@ from advisor.process.yaml_file import read_yaml
 ROOT = Path(__file__).parent.parent
 LISTED = ROOT / "tests" / "shared_cases.yaml"
 ENDINGS = (".tlog", ".bin", ".ulg", ".log")
+GAP = ("gap", "--axis", "lateral")
 CLOSE = 0.05
 """Share of M_alpha by which a case may differ from its twin where the list gives no other."""
 
 
-def answer(folder: Path, log: str, aircraft: str | None) -> tuple[int, dict[str, Any], str]:
+def answer(
+    folder: Path, log: str, aircraft: str | None, asked: Sequence[str] = ("analyze",)
+) -> tuple[int, dict[str, Any], str]:
     """Return exit code, document, and the answer as text."""
     given = ["--aircraft", str(folder / aircraft)] if aircraft else []
     program = "from advisor.start import main; main()"
-    command = [sys.executable, "-c", program, "analyze", str(folder / log), "--json", *given]
+    command = [sys.executable, "-c", program, *asked, str(folder / log), "--json", *given]
     done = subprocess.run(command, capture_output=True, text=True, check=False)
     try:
         return done.returncode, json.loads(done.stdout), done.stdout
@@ -59,6 +63,11 @@ def lacking(case: Mapping[str, Any], document: dict[str, Any], text: str, twin: 
     for name, (value, tolerance) in case.get("near", {}).items():
         if not any(abs(one - value) <= tolerance for one in values_of(document, name)):
             yield f"{name} {values_of(document, name)}, not {value}"
+    causes = (document.get("lateral") or {}).get("causes") or []
+    sizes = {one["name"]: next(iter(one["parameters"].values()))["value"] for one in causes if one["present"]}
+    for name, (value, tolerance) in case.get("cause", {}).items():
+        if name not in sizes or abs(sizes[name] - value) > tolerance:
+            yield f"causes {sizes}, not {name} {value}"
     if twin is not None:
         mine, his = (values_of(one, "M_alpha") for one in (document, twin))
         within = case.get("within", CLOSE)
@@ -75,12 +84,12 @@ def main() -> int:
     listed = read_yaml(LISTED)
     assert isinstance(listed, dict)
     asked = sys.argv[1:] or sorted(p.name for p in folder.iterdir() if p.suffix in ENDINGS)
-    once = cache(lambda log, aircraft: answer(folder, log, aircraft))
+    once = cache(lambda log, aircraft, *asked: answer(folder, log, aircraft, asked or ("analyze",)))
 
     def run(log: str) -> tuple[str, bool]:
         case = listed.get(log, {})
         twin = once(case["like"], _of_twin(case))[1] if "like" in case else None
-        code, document, text = once(log, case.get("aircraft"))
+        code, document, text = once(log, case.get("aircraft"), *(GAP if "cause" in case else ()))
         wrong = [*([] if code in (0, 3) else [f"exit code {code}"]), *lacking(case, document, text, twin)]
         state = ("open" if "open" in case else "FAIL") if wrong else "ok"
         return f"{state:5s}{log}: {'; '.join(wrong) or 'as listed'}", state != "FAIL"

@@ -77,6 +77,12 @@ class Parts:
         """Return the result of ``work``; None if a fault ends the part."""
         return self.make(part, work, lambda failed: None)
 
+    def ended(self, part: str, reason: str) -> None:
+        """Add a part that ended without a fault, but before its result was final."""
+        failed = FailedPart(part, reason)
+        self._tell(failed)
+        self._failed[part] = failed
+
     def make(self, part: str, work: Callable[[], _Made], instead: Callable[[FailedPart], _Made]) -> _Made:
         """Return the result of ``work``, or the result of ``instead`` if a numerical fault ended the part."""
         made = attempt(part, work)

@@ -39,6 +39,10 @@ from advisor.process.parts import Parts
 _TOLERANCES = (ERROR_IF_RIGHT, ERROR_IF_WRONG)
 LIKELY = 0.01
 """Probability above which an effect is also fitted with side gusts, and above which its sizes are stated."""
+SEARCHES = 4
+"""Numerical: largest number of searches for the plain model, each from the likeliest effect's derivatives."""
+SEARCH = "roll and yaw, search of the derivatives alone"
+"""Name of the part that fails when the last search still finds a likelier plain model."""
 _STEPS = 2
 """Numerical: number of Gauss-Newton steps from the optimum in white noise to the optimum in gusts."""
 
@@ -92,29 +96,38 @@ class SideFlight:
         if base is not None:
             # With an effect, another lateness of commands and outputs changes the outputs by something else.
             begin = replace(base.fit, free=tuple(replace(s, column=None) for s in base.fit.free))
+        # At two temperatures each of two optima may be the likelier: one serves all searches.
         share = colour_share(begin)
-        plain = begin if base is None else self.case.fit(begin.point, begin.free, share=share) or base.fit
+        plain = self.case.fit(begin.point, begin.free, share=share) or begin
+        for _ in range(SEARCHES):
+            everyone = self._each_about(plain, share, base, most)
+            again = self._searched_again(everyone, share) if base is None else None
+            if again is None:
+                break
+            # The plain model had ended in a local minimum, and so had all models that began there.
+            plain = again
+        else:
+            self.parts.ended(SEARCH, f"no end after {SEARCHES} searches")
+        plain = everyone[0].fit
+        # What the likeliest model still lacks is an error of every model.
+        share = colour_share(max(everyone, key=lambda s: s.likelihood).fit, lacking=True)
+        weighed = (replace(self._model(s.effect, s.fit, plain, share), starts=s.starts) for s in everyone)
+        return share**-2, list(weighed)
+
+    def _each_about(self, plain: Fit, share: float, base: SideModel | None, most: int) -> list[SideModel]:
+        """Return the plain model, and the models with each likely effect that begin there."""
         table = _beside(base, self.table)
-        starts = Starts(self.case, plain, table)
-        of_laws = Starts(self.case, plain, _beside(base, self.laws)).of_each
+        starts = Starts(self.case, plain, table, share=share)
+        of_laws = Starts(self.case, plain, _beside(base, self.laws), share=share).of_each
         chosen = [(s, plain, ERROR_IF_WRONG) for s in likeliest(starts.of_each, most)]
         chosen += [(s, plain, ERROR_IF_WRONG) for s in likeliest(of_laws, LAWS)]
         near = self._at_the_file(plain, share, base) if self.is_stated else None
         if near is not None:
             others = [effect for effect in table if effect.name not in {s.name for s, *_ in chosen}]
-            tight = Starts(self.case, near, others, ERROR_IF_RIGHT).of_each
+            tight = Starts(self.case, near, others, ERROR_IF_RIGHT, share).of_each
             chosen += [(s, near, ERROR_IF_RIGHT) for s in likeliest(tight, AT_THE_FILE)]
-        everyone = [replace(self._model(None, plain, plain, share), starts=starts)]
         models = (self._added(s, at, tolerance, plain, share) for s, at, tolerance in chosen)
-        everyone += filter(None, models)
-        again = self._searched_again(everyone, share) if base is None else None
-        if again is not None:
-            # The plain model had ended in a local minimum, and so had all models that began there.
-            return replace(self, plain=again).explained(base, most)
-        # What the likeliest model still lacks is an error of every model.
-        share = colour_share(max(everyone, key=lambda s: s.likelihood).fit, lacking=True)
-        weighed = (replace(self._model(s.effect, s.fit, plain, share), starts=s.starts) for s in everyone)
-        return share**-2, list(weighed)
+        return [replace(self._model(None, plain, plain, share), starts=starts), *filter(None, models)]
 
     def _at_the_file(self, plain: Fit, share: float, base: SideModel | None) -> Fit | None:
         """Return the fit about the file's derivatives, which a wrong effect in the flight does not
@@ -179,7 +192,7 @@ class SideFlight:
         for lead in leads:
             for other in (starts[e.name] for e in _beside(lead, self.table) if e.name in starts):
                 price = looked.together(starts[lead.name], other)
-                if price < starts[lead.name].price - 2.0 * stage.heat * np.log(len(self.table)):
+                if price < starts[lead.name].price - 2.0 * np.log(len(self.table)):
                     yield price, lead.name, other.name
 
     def natural_nats(self, lead: SideModel, pair: SideModel) -> float:

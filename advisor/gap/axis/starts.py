@@ -59,7 +59,7 @@ class Start(NamedTuple):
 
     effect: SideEffect
     cost: float
-    """-2 log likelihood at the start, after a linear refit of all other parameters."""
+    """-2 log likelihood over the temperature at the start, after a linear refit of all other parameters."""
     point: Point
     way: FloatArray
     """Shape (N,): weighted change of the outputs by the effect, without what other parameters absorb."""
@@ -81,17 +81,24 @@ class Starts:
     """Best starting value of each effect."""
 
     def __init__(
-        self, case: Case, plain: Fit, table: Sequence[SideEffect], tolerance: float = ERROR_IF_WRONG
+        self,
+        case: Case,
+        plain: Fit,
+        table: Sequence[SideEffect],
+        tolerance: float = ERROR_IF_WRONG,
+        share: float = 1.0,
     ) -> None:
         self._case, self._plain = case, plain
         prior = case.prior_of(tolerance, plain.free)
-        self._columns = plain.columns * plain.weight[:, None]
+        # One nat of white noise counts as share² nats, beside priors with their true weight.
+        self._weight = share * plain.weight
+        self._columns = plain.columns * self._weight[:, None]
         self._information = self._columns.T @ self._columns + np.diag(prior.precision)
         own = plain.assembly.free[plain.assembly.free >= len(plain.point.theta)]
-        self._own = plain.sensitivities[:, own] * plain.weight[:, None]
+        self._own = plain.sensitivities[:, own] * self._weight[:, None]
         self._parts = [plain.assembly.owner == m for m in range(plain.assembly.maneuvers)]
-        self._begin = self._without(plain.residual * plain.weight)
-        self._cost = -2.0 * plain.likelihood - float(self._begin @ self._begin)
+        self._begin = self._without(plain.residual * self._weight)
+        self._cost = -2.0 * share**2 * plain.likelihood - float(self._begin @ self._begin)
         self.of_each = [self._best(effect) for effect in table]
 
     def together(self, start: Start, other: Start) -> float:
@@ -136,7 +143,7 @@ class Starts:
 
     def _linear(self, effect: SideEffect, columns: FloatArray) -> Start:
         """Return the best start of an effect whose outputs are linear in its parameters."""
-        ways = np.column_stack([self._without(column * self._plain.weight) for column in columns.T])
+        ways = np.column_stack([self._without(column * self._weight) for column in columns.T])
         prior = np.array(effect.std) ** -2.0
         values = np.asarray(np.linalg.solve(ways.T @ ways + np.diag(prior), ways.T @ self._begin))
         way = ways @ values
@@ -157,7 +164,7 @@ class Starts:
             len(begun), len(sides), len(self._begin)
         )
         for values, setting, changed in zip(effect.starts, begun, changes, strict=True):
-            ways = [self._without(change * self._plain.weight) for change in changed]
+            ways = [self._without(change * self._weight) for change in changed]
             shares = [np.clip(way @ self._begin / (way @ way + 1e-12), *SECANT) for way in ways]
             left = [self._begin - share * way for share, way in zip(shares, ways, strict=True)]
             squares = np.array([[float(rest[rows] @ rest[rows]) for rows in self._parts] for rest in left])

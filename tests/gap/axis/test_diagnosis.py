@@ -15,7 +15,7 @@ from advisor.gap.axis import diagnosis
 from advisor.gap.axis import flight as flight_of_side
 from advisor.gap.axis.diagnosis import _capped, diagnose_side, where_of
 from advisor.gap.axis.evidence import Squares
-from advisor.gap.axis.fit import Fit
+from advisor.gap.axis.fit import Fit, Point
 from advisor.gap.axis.flight import SideFlight, SideModel
 from advisor.gap.axis.measure import measured, sums
 from advisor.gap.axis.models import case_of
@@ -143,7 +143,9 @@ def diagnosed_with(reading):
     known = SideControl(lag_s=0.0, delay_s=0.0)
     aircraft = Aircraft(aileron=known, rudder=known, beta=Beta("none"), model=dict(JET))
     flight = [changed(m, "p", y=reading(m.channels["p"].y)) for m in maneuvers()]
-    return diagnose_side(case_of(LATERAL, flight, aircraft, np.array([JET[name] for name in SIDE_PARAMETERS])))
+    return diagnose_side(
+        case_of(LATERAL, flight, aircraft, np.array([JET[name] for name in SIDE_PARAMETERS]))
+    )
 
 
 @pytest.mark.study
@@ -204,14 +206,75 @@ def test_effects_that_set_the_same_number_are_never_two_causes():
 
 def test_an_effect_changes_what_a_late_command_does_so_that_its_slope_is_taken_anew(monkeypatch):
     late = Parameter(("aileron", "delay_s"), Prior(0.0, 0.01), step=1e-3, column=np.ones(3))
-    fit = Fit(None, None, (late,), *(np.ones(3) for _ in range(2)), 0.0, *(np.ones((3, 1)) for _ in range(3)), None)
+    fit = Fit(
+        None, None, (late,), *(np.ones(3) for _ in range(2)), 0.0, *(np.ones((3, 1)) for _ in range(3)), None
+    )
     again = []
     monkeypatch.setattr(flight_of_side, "colour_share", lambda *_, **__: 1.0)
-    monkeypatch.setattr(flight_of_side, "Starts", lambda *_: SimpleNamespace(of_each=[]))
+    monkeypatch.setattr(flight_of_side, "Starts", lambda *_, **__: SimpleNamespace(of_each=[]))
     monkeypatch.setattr(SideFlight, "_model", lambda *_: side_model(fit))
     case = SimpleNamespace(stated=(), natural=(), fit=lambda at, free, **_: again.extend(free) or fit)
     SideFlight(case, fit, []).explained(SimpleNamespace(fit=fit, effect=None), 3)
     assert [one.column for one in again] == [None]
+
+
+class TwoOptima:
+    """A case with two plain fits, each the likelier one by ``heights`` at the temperature of one of them."""
+
+    stated, natural, flown = (), (), None
+
+    def __init__(self, heights):
+        self.heights = heights
+        self.fits = [
+            SimpleNamespace(
+                point=Point(np.zeros(1), np.zeros((1, 1)), {("rudder", "lag_s"): np.zeros(1)}),
+                free=(),
+                of=k,
+                share=share,
+                likelihood=1.0,
+            )
+            for k, share in enumerate((1.0, 0.5))
+        ]
+
+    def fit(self, at, free, tolerance=0.3, share=1.0):
+        self.fits.reverse()
+        return self.fits[0]
+
+    def prior_of(self, tolerance, free, share=1.0):
+        return SimpleNamespace(height=lambda fit: self.heights(fit, share))
+
+
+def searched(monkeypatch, heights):
+    """Return the plain model's fit after the search among two optima, and the parts that failed."""
+    case = TwoOptima(heights)
+    start = SimpleNamespace(name="lag", price=0.0, saved=0.0)
+    monkeypatch.setattr(flight_of_side, "colour_share", lambda fit, **_: fit.share)
+    monkeypatch.setattr(flight_of_side, "Starts", lambda *_, **__: SimpleNamespace(of_each=[start]))
+    monkeypatch.setattr(flight_of_side, "base_of", lambda *_: np.zeros(1))
+    lag = SimpleNamespace(places=(("rudder", "lag_s"),))
+    monkeypatch.setattr(
+        SideFlight, "_model", lambda self, effect, fit, *_: replace(side_model(fit), effect=effect)
+    )
+    monkeypatch.setattr(
+        SideFlight, "_added", lambda self, start, at, *_: replace(side_model(at, 1.0), effect=lag)
+    )
+    side = SideFlight(case, case.fits[0], [])
+    _, (plain, *_) = side.explained(None, 1)
+    return plain.fit, side.parts.failed
+
+
+def test_two_plain_fits_are_compared_at_one_temperature_so_that_the_search_ends(monkeypatch):
+    """Each optimum is the likelier at the temperature of the other: two temperatures take turns for ever."""
+    fit, failed = searched(monkeypatch, lambda fit, share: 10.0 * (fit.share != share))
+    assert (fit.share, failed) == (0.5, ())
+
+
+def test_a_search_without_an_end_stops_and_is_reported(monkeypatch):
+    """Every other search finds something likelier still."""
+    heights = iter(range(0, 10000, 100))
+    _, (failed,) = searched(monkeypatch, lambda fit, share: -next(heights))
+    assert failed.part == flight_of_side.SEARCH
+    assert f"{flight_of_side.SEARCHES} searches" in str(failed.problem)
 
 
 @pytest.mark.parametrize(("right", "wrong", "fitted"), [(5.0, 0.0, False), (0.0, 5.0, True)])
@@ -275,19 +338,16 @@ def test_no_gap_is_unlikely_beside_a_visible_gap_of_held_out_manoeuvres(
     assert len(found.chosen) == chosen
 
 
-@pytest.mark.parametrize(
-    ("saved", "heat", "named"), [(1.0, 1.0, []), (9.0, 1.0, [("r", "p")]), (9.0, 5.0, [])]
-)
-def test_a_pair_counts_where_it_makes_up_for_the_second_effects_share_of_the_prior(saved, heat, named):
-    """One of four effects has a share of 1.4 nats, 2.8 of the cost; coloured residuals count less."""
+@pytest.mark.parametrize(("saved", "named"), [(1.0, []), (9.0, [("r", "p")])])
+def test_a_pair_counts_where_it_makes_up_for_the_second_effects_share_of_the_prior(saved, named):
+    """One of four effects has a share of 1.4 nats, 2.8 of the cost."""
     p, r, *others = (SimpleNamespace(name=name, places=((name, "scale"),)) for name in "prab")
     starts = SimpleNamespace(
         of_each=[SimpleNamespace(name=one.name, price=100.0) for one in (p, r)],
         together=lambda one, other: 100.0 - saved,
     )
     pairs = SideFlight(None, None, [p, r, *others]).pairs(
-        SimpleNamespace(plain=SimpleNamespace(starts=starts), heat=heat),
-        [SimpleNamespace(name="r", effect=r)],
+        SimpleNamespace(plain=SimpleNamespace(starts=starts)), [SimpleNamespace(name="r", effect=r)]
     )
     assert [names for _, *names in pairs] == [list(pair) for pair in named]
 

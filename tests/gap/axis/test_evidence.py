@@ -1,7 +1,6 @@
 """Decisions on evidence made by hand: a line through the origin in three manoeuvres, and its alternatives."""
 
 from dataclasses import dataclass
-
 from types import SimpleNamespace
 
 import numpy as np

@@ -233,6 +233,19 @@ def test_a_late_roll_rate_promises_as_much_as_an_early_yaw_rate_where_all_other_
     assert promised["late_roll_rate_stamps"] == pytest.approx(promised["late_yaw_rate_stamps"], rel=0.01)
 
 
+def test_a_coloured_nat_counts_less_beside_the_prior_of_a_replaced_nuisance_parameter(case, flight):
+    """At a tenth of the white noise's nats, an effect saves a tenth; what its prior costs stays whole."""
+    fit, _, _ = flight
+    table = [one for one in side_effects(case.flown) if one.name == "roll_rate_scale"]
+    strained = [one for one in side_effects(case.flown) if one.name == "late_roll_rate_stamps"]
+    left = with_residual(fit, 0.05 * fit.fitted)
+    white, coloured = (Starts(case, left, table, share=share).of_each[0] for share in (1.0, 0.1**0.5))
+    gains = [-2.0 * scale * left.likelihood - one.cost for scale, one in ((1.0, white), (0.1, coloured))]
+    assert gains[1] == pytest.approx(0.1 * gains[0], rel=0.05)
+    saved = [Starts(case, fit, strained, share=share).of_each[0].saved for share in (1.0, 0.1**0.5)]
+    assert saved[0] == saved[1]
+
+
 def test_a_delay_of_all_commands_beyond_that_of_telemetry_is_evidence_of_one_cause(case):
     late = [
         replace(record, inputs={n: s._replace(t=s.t - 0.2) for n, s in record.inputs.items()})
