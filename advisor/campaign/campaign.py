@@ -14,7 +14,6 @@ from advisor.campaign.engineer import OF, Engineer
 from advisor.campaign.hand_decisions import NOTHING, ByHand
 from advisor.campaign.instruments import side_signs, together, with_fit
 from advisor.campaign.journal import Journal
-from advisor.campaign.late_limits import recount
 from advisor.campaign.state import (
     OF_ELEVATOR,
     AxisState,
@@ -27,7 +26,6 @@ from advisor.decision.crew_plan import CrewPlan, crew_plan
 from advisor.decision.verdict import FlightTestVerdict
 from advisor.flight.maneuvers.events import (
     Activity,
-    ElevatorRescaled,
     FlightEvent,
     ManeuverAgain,
     ManeuverFlown,
@@ -295,8 +293,6 @@ class Campaign:
                     self._activity = (*self._activity[:-1], joined) if joined else (*self._activity, event)
                 case ManeuverAgain():
                     news += self._heard_again(event)
-                case ElevatorRescaled():
-                    news += self._count_anew(event)
         if self._tell is not None:
             for happened in news:
                 self._tell(happened)
@@ -367,16 +363,6 @@ class Campaign:
             return []
         half.take_better(maneuver, because)
         return [ManeuverJudged(half.numbered(maneuver.number), half.flight_test, self._plan, half.axis)]
-
-    def _count_anew(self, event: ElevatorRescaled) -> list[CampaignEvent]:
-        """Scale earlier manoeuvres by an elevator limit that arrived late, so that all use one scale."""
-        self.wait()
-        again = recount(self._elevator.maneuvers, event)
-        if again.notice is None:
-            return []
-        self._journal.take(again.notice)
-        self._elevator.count_anew(again)
-        return [again.notice]
 
     @property
     def _stream(self) -> FlightStream:
