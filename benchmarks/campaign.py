@@ -129,7 +129,7 @@ def hours() -> None:
         alone.feed(second)
     alone.finish()
     pieces = alone.state.maneuvers
-    campaign, told_h = Campaign(KNOWN_SERVO, settle=True), 0.0
+    campaign, told_h = Campaign(KNOWN_SERVO, informs=True), 0.0
     begin = time.process_time()
     print(f"\nFlight of {HOURS:g} h, a manoeuvre every {EVERY_S:g} s, with screens at {SPEED:g} times")
     at: list[tuple[int, float]] = []

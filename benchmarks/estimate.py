@@ -9,8 +9,7 @@ own optimum, and the cost there is evaluated by one and the same function.
 import math
 import time
 from collections.abc import Callable
-from dataclasses import dataclass, replace
-from pathlib import Path
+from dataclasses import dataclass
 
 import casadi as ca
 import numpy as np
@@ -18,18 +17,10 @@ from numpy.typing import NDArray
 from scipy.optimize import least_squares, minimize
 from scipy.signal import lsim
 
-from advisor.aircraft.aircraft import Aircraft
-from advisor.aircraft.controls import Elevator
 from advisor.aircraft.reference import PARAMETERS
 from advisor.bundled.study.batch import solve_many
-from advisor.flight.maneuvers.events import ManeuverFlown
-from advisor.flight.maneuvers.maneuver import Maneuver, Span
-from advisor.flight.signals.record import Channel
-from advisor.flight.stream.stream import FlightStream
-from advisor.mavlink.logs.tlog import read_tlog
 from advisor.model.outputs import N_PARAMETERS
 from advisor.model.response import respond
-from advisor.oem.following import Follower
 from advisor.oem.problem import OutputErrorProblem, Record
 from advisor.oem.rows import Signal
 from advisor.oem.solution import search, solve
@@ -40,7 +31,6 @@ Array = NDArray[np.float64]
 
 NOISE = 0.05
 SAMPLES = 500
-LOG = Path(__file__).parents[1] / "logs" / "arduplane-calm.tlog"
 
 
 @dataclass(frozen=True)
@@ -363,50 +353,11 @@ def batch() -> None:
     )
 
 
-def follow() -> None:
-    """Load of estimating anew at each of 50 samples a second while the manoeuvre is being flown."""
-    data = make()
-    channels = {"elevator": data.u, "alpha": data.z[:, 0], "q": data.z[:, 1]}
-    span = Span(0.0, 1.0, 8.0, float(data.t[-1]), "3-2-1-1", (), "")
-    simulated = Maneuver(1, 0, span, {name: Channel(name, data.t, y) for name, y in channels.items()})
-    servo = Aircraft(elevator=Elevator(calibration=((1000, 25.0), (1500, 0.0), (2000, -25.0)), lag_s=0.14))
-    stream = FlightStream(servo)
-    events = [event for columns in read_tlog(LOG) for event in stream.feed(columns)]
-    recorded = next(event.maneuver for event in events if isinstance(event, ManeuverFlown))
-    print("\nComplete estimate at every sample of 50 Hz, from the third second on:")
-    load("simulated, alpha and q", simulated, Aircraft())
-    load("recorded flight, alpha, q, a_z, theta at stamps of their own, speed moving", recorded, servo)
-
-
-GOAL_PERCENT = 5.0
-"""Of a core, for the estimate at every sample of 50 Hz."""
-
-
-def load(name: str, maneuver: Maneuver, aircraft: Aircraft) -> None:
-    """Print what following a manoeuvre sample by sample takes."""
-    stamps = maneuver.channels["q"].t[150:]
-    cuts = [
-        replace(maneuver, channels={name: c.cut(-math.inf, t) for name, c in maneuver.channels.items()})
-        for t in stamps.tolist()
-    ]
-
-    def through() -> None:
-        follower = Follower(aircraft)
-        for cut in cuts:
-            follower.refresh(cut)
-
-    # Neighbours on the machine make a pass longer, never shorter.
-    seconds = min(cpu(through) for _ in range(5)) / len(cuts)
-    share = 100 * seconds * 50
-    print(f"  {name}: {1e3 * seconds:.2f} ms each, {share:.1f} % of a core (goal {GOAL_PERCENT:g})")
-
-
 def main() -> None:
     print(f"{len(PARAMETERS)} parameters and 2 initial states, {SAMPLES} samples of alpha and q, CPU time\n")
     race()
     scale()
     batch()
-    follow()
 
 
 if __name__ == "__main__":

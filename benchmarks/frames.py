@@ -39,7 +39,7 @@ class Frame(NamedTuple):
 def flown(log: Path, aircraft: Aircraft, *, waits: bool) -> list[Frame]:
     """Return the words of a flight; ``waits`` is a flight that waits for the computer."""
     timeline = Timeline([columns for batch in open_log(log) for columns in batch])
-    campaign = Campaign(aircraft, settle=True, lateral=True, aside=not waits)
+    campaign = Campaign(aircraft, informs=True, lateral=True, aside=not waits)
     begun_s, at_s, frames = time.monotonic(), 0.0, []
     while at_s < timeline.duration_s:
         if not waits:

@@ -45,7 +45,7 @@ def live_plots(log: Path) -> tuple[float, float]:
     with terminal(str(log), screen="engineer") as here:
         here.until(says("Manoeuvres"))
         here.press(b"5]")
-        here.until(says("fitted so far"), 60.0)
+        here.until(says("in the air: manoeuvre"), 60.0)
         shares = []
         for seconds in (4.0, 12.0):
             before = here.cpu_s

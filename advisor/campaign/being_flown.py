@@ -1,4 +1,4 @@
-"""The input that is being flown, for live faces: its estimate, its errors, and the word that it is enough."""
+"""The input that is being flown, for live faces: its errors, and the word that it is enough."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
@@ -7,13 +7,11 @@ from typing import Any
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.campaign.arriving_information import ArrivingInformation
-from advisor.campaign.running_estimate import Settled, Settling
 from advisor.campaign.state import AxisState
 from advisor.decision.arriving import Arriving
 from advisor.flight.maneuvers.announced import Announced
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.flight.stream.flights import Flights
-from advisor.oem.estimate import Estimate
 from advisor.process.aside import Aside
 from advisor.process.parts import Parts
 from advisor.words.axes import AxisName
@@ -35,28 +33,20 @@ class BeingFlown:
 
     Parameters
     ----------
-    settles, informs
-        Whether the estimate and the information of the input are computed.
+    informs
+        Whether the information of the input is computed.
     aside
         Compute the information in another thread.
     """
 
     def __init__(
-        self, aircraft: Aircraft, flights: Flights, parts: Parts, settles: bool, informs: bool, aside: bool
+        self, aircraft: Aircraft, flights: Flights, parts: Parts, informs: bool, aside: bool
     ) -> None:
         self._flights, self._parts = flights, parts
-        self._settling = Settling() if settles else None
         self._information = ArrivingInformation(aircraft) if informs else None
         self._computing: Aside[Arriving | None] = Aside(aside)
         self._newest: Arriving | None = None
         self._heard_enough: Announced | None = None
-
-    def settled(self, flying: Maneuver | None, learnt: Aircraft, model: Estimate | None) -> Settled | None:
-        """Return the estimate of the input; None between inputs."""
-        if self._settling is None:
-            return None
-        follow = partial(self._settling.follow, flying, learnt, model)
-        return self._parts.make("estimate of the manoeuvre being flown", follow, lambda _: None)
 
     def arrived(self, flying: Maneuver | None, axes: Axes | None) -> Arriving | None:
         """Return the errors with the information of the input.

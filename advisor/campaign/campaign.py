@@ -14,7 +14,6 @@ from advisor.campaign.engineer import OF, Engineer
 from advisor.campaign.hand_decisions import NOTHING, ByHand
 from advisor.campaign.instruments import side_signs, together, with_fit
 from advisor.campaign.journal import Journal
-from advisor.campaign.late_limits import recount
 from advisor.campaign.state import (
     OF_ELEVATOR,
     AxisState,
@@ -27,7 +26,6 @@ from advisor.decision.crew_plan import CrewPlan, crew_plan
 from advisor.decision.verdict import FlightTestVerdict
 from advisor.flight.maneuvers.events import (
     Activity,
-    ElevatorRescaled,
     FlightEvent,
     ManeuverAgain,
     ManeuverFlown,
@@ -70,7 +68,6 @@ class _Verdicts:
     """Verdicts of the manoeuvres that have been judged so far."""
 
     axes: Mapping[AxisName, AxisState[Any]]
-    learnt: Aircraft
     maneuvers: tuple[Maneuver, ...]
     """Manoeuvres of all axes."""
     estimates: tuple[Estimate | NoEstimate, ...]
@@ -88,9 +85,9 @@ class Campaign:
     ----------
     target_system
         System id of the vehicle; None for the first vehicle that sends.
-    settle
-        Whether to estimate while a manoeuvre is still being flown, for live displays.
-        Verdicts do not depend on the running estimate.
+    informs
+        Whether to compute the information of the input that is being flown, for live displays. With ``tell``
+        it is always computed. Verdicts do not depend on it.
     marks
         Further marks, which replace overlapping marks of ``by_hand`` and are not kept in a file.
     names
@@ -107,7 +104,7 @@ class Campaign:
         self,
         aircraft: Aircraft,
         target_system: int | None = None,
-        settle: bool = False,
+        informs: bool = False,
         tell: Callable[[CampaignEvent], object] | None = None,
         by_hand: ByHand = NOTHING,
         marks: Sequence[Mark] = (),
@@ -133,8 +130,8 @@ class Campaign:
         self._activity: tuple[Activity, ...] = ()
         self._whole_flights = WholeFlights()
         self._ended = False
-        informs = settle or tell is not None
-        self._being_flown = BeingFlown(aircraft, self._flights, self._parts, settle, informs, aside)
+        informs = informs or tell is not None
+        self._being_flown = BeingFlown(aircraft, self._flights, self._parts, informs, aside)
         self._outputs_unknown: Problem | None = None
         self._shown: _Verdicts | None = None
 
@@ -193,9 +190,6 @@ class Campaign:
         unknown = [flight.sides_unknown for flight in heard]
         self._outputs_unknown = unknown[-1] if all(unknown) else None
         shown = self._so_far()
-        pitch, side = shown.axes["pitch"], shown.axes.get("lateral")
-        settled = self._being_flown.settled(flying, shown.learnt, pitch.model)
-        sideways = side is not None and side.has_begun and not pitch.has_begun
         instruments = self._parts.make("instruments", lambda: self._contradictions(shown), lambda _: ())
         return CampaignState(
             vehicle=stream.vehicle,
@@ -205,9 +199,6 @@ class Campaign:
             axes=shown.axes,
             flying=flying,
             marking_since_s=stream.marks.by_hand_since_s,
-            settling=settled.estimate if settled else None,
-            readable=settled is not None and settled.readable,
-            enough=settled.enough if settled and not sideways else None,
             arriving=self._being_flown.arrived(flying, self._axes_before),
             judging=self._aside.is_busy,
             elevator_notes=flights.elevator_notes,
@@ -246,7 +237,7 @@ class Campaign:
         if lateral is not None:
             axes["lateral"] = lateral.state(self._outputs_unknown)
         sideways = lateral.maneuvers if lateral is not None else ()
-        return _Verdicts(axes, elevator.learnt, (*elevator.maneuvers, *sideways), elevator.estimates)
+        return _Verdicts(axes, (*elevator.maneuvers, *sideways), elevator.estimates)
 
     @property
     def _axes_before(self) -> Axes | None:
@@ -302,8 +293,6 @@ class Campaign:
                     self._activity = (*self._activity[:-1], joined) if joined else (*self._activity, event)
                 case ManeuverAgain():
                     news += self._heard_again(event)
-                case ElevatorRescaled():
-                    news += self._count_anew(event)
         if self._tell is not None:
             for happened in news:
                 self._tell(happened)
@@ -374,16 +363,6 @@ class Campaign:
             return []
         half.take_better(maneuver, because)
         return [ManeuverJudged(half.numbered(maneuver.number), half.flight_test, self._plan, half.axis)]
-
-    def _count_anew(self, event: ElevatorRescaled) -> list[CampaignEvent]:
-        """Scale earlier manoeuvres by an elevator limit that arrived late, so that all use one scale."""
-        self.wait()
-        again = recount(self._elevator.maneuvers, event)
-        if again.notice is None:
-            return []
-        self._journal.take(again.notice)
-        self._elevator.count_anew(again)
-        return [again.notice]
 
     @property
     def _stream(self) -> FlightStream:

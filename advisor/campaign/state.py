@@ -9,9 +9,12 @@ from typing import Any, Generic, TypeVar
 
 from advisor.decision.arriving import Arriving
 from advisor.decision.crew_plan import CrewPlan, crew_plan
+from advisor.decision.envelope import shortest_response_s
+from advisor.decision.first_unit import natural_period
 from advisor.decision.verdict import FlightTestVerdict, ManeuverVerdict
 from advisor.flight.elevator.elevator_guess import Guess
 from advisor.flight.maneuvers.events import Activity
+from advisor.flight.maneuvers.free_response import FREE_S
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.flight.signals.instrument_finding import InstrumentFinding
 from advisor.flight.signals.power_on import Course
@@ -144,13 +147,6 @@ class CampaignState:
     """Manoeuvre that is being flown, up to the newest sample. None between manoeuvres."""
     marking_since_s: float | None = None
     """Start of an open mark by hand, s since boot. None without an open mark."""
-    settling: Estimate | None = None
-    """Estimate from the manoeuvre that is being flown, repeated as the manoeuvre grows."""
-    readable: bool = False
-    """Whether the numbers of ``settling`` may be shown: the input is over, the servo is known, and they agree
-    with ``model``."""
-    enough: str | None = None
-    """Advice to recover, given when more free response would not improve the estimate."""
     arriving: Arriving | None = None
     """Errors of the derivatives with the information of the input that is being flown, at whole seconds."""
     judging: bool = False
@@ -231,6 +227,16 @@ class CampaignState:
         """The lateral state if only the lateral axes have accepted manoeuvres; else None."""
         side = self.lateral
         return None if side is None or self.axes["pitch"].is_accepted or not side.is_accepted else side
+
+    @property
+    def is_recorded(self) -> bool:
+        """Whether the manoeuvre in flight may end: its input is over, and its free response is long enough to
+        be judged."""
+        if self.flying is None or self.tested_sideways is not None:
+            return False
+        span, period_s = self.flying.span, natural_period(self.flying, self.model)
+        least_s = max(FREE_S[0], shortest_response_s(period_s))
+        return span.input_is_over and span.end_s - span.last_step_s >= least_s
 
     @property
     def progress(self) -> str:

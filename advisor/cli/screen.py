@@ -119,12 +119,14 @@ def _campaign(
     tell: Listener | None,
     marks: "Sequence[Mark]",
     names: Sequence[str],
-    settle: bool,
+    screens: bool,
     by_hand: "ByHand",
 ) -> "Campaign":
     from advisor.campaign.campaign import Campaign
 
-    return Campaign(aircraft, target_system, settle, tell, by_hand, marks, names, lateral=True, aside=settle)
+    return Campaign(
+        aircraft, target_system, screens, tell, by_hand, marks, names, lateral=True, aside=screens
+    )
 
 
 def _show(

@@ -138,6 +138,11 @@ def with_gap(channels: Sequence[Channel], maneuver: Maneuver, period_s: float) -
     return sorted(reasons, key=lambda reason: (-reason.value, reason.text))[:1]
 
 
+def shortest_response_s(period_s: float) -> float:
+    """Return the least duration of the free response of a motion with this natural period, s."""
+    return _SHORTEST_FREE * period_s
+
+
 def short_response(maneuver: Maneuver, period_s: float) -> list[Reason]:
     """Return a reason if the record ends before the motion has decayed."""
     if maneuver.span.closed_by == LEFT:
@@ -145,7 +150,7 @@ def short_response(maneuver: Maneuver, period_s: float) -> list[Reason]:
     if is_broken_off(maneuver.span):
         what, mend = _CUT_SHORT_BY[maneuver.span.closed_by]
         return [Reason("aborted", f"{what} before the input is over; {mend}", 0.0, 1.0)]
-    free, least = maneuver.span.end_s - maneuver.span.last_step_s, _SHORTEST_FREE * period_s
+    free, least = maneuver.span.end_s - maneuver.span.last_step_s, shortest_response_s(period_s)
     if free >= least:
         return []
     shown, limit = distinct_texts(free, least, 1)

@@ -122,7 +122,7 @@ at least two roll time constants of both (0.1 and 0.5 s).
 """
 
 
-def natural_period(maneuver: Maneuver, estimate: Estimate | NoEstimate) -> float:
+def natural_period(maneuver: Maneuver, estimate: Estimate | NoEstimate | None) -> float:
     """Return the natural period of the short-period motion in s, 2π/ω with ω² = Z_α M_q − (1 + Z_q) M_α.
 
     Without a valid estimate, the period follows from the input, which crews match to the aircraft. That

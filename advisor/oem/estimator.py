@@ -147,13 +147,6 @@ def _with_instruments(plain: Solution, aircraft: Aircraft, near: Solution | None
     return held if held.misfit(weighing) < linear.misfit(weighing) else linear
 
 
-def lag_is_unknown(aircraft: Aircraft) -> bool:
-    """Return whether the servo's lag comes neither from the crew nor from an earlier manoeuvre."""
-    instruments = found_of(aircraft)
-    has_lag = instruments is not None and "servo_lag_s" in instruments.names
-    return aircraft.elevator.lag_s is None and not has_lag
-
-
 def _solved(problem: OutputErrorProblem) -> Solution | NoEstimate:
     """Return the solution with the gravity model that the data clearly prefer.
 
@@ -194,7 +187,6 @@ def report(
     *,
     identified: Sequence[Identified] = (),
     forces: Driven | None = None,
-    quick: bool = False,
 ) -> Estimate:
     """Return a solution as a reported estimate.
 
@@ -202,11 +194,10 @@ def report(
     ----------
     identified : instrument parameters of the fit.
     forces : estimate with unknown forces, where output error is not valid.
-    quick : leave out what takes milliseconds: the cost of missing channels, and the efficient estimate.
     """
     sound = [x for x in identified if x.instrument.name not in solution.problem.terms]
     filtered = None if forces is None else forces.solution
-    best = filtered or (solution if quick else efficient(solution))
+    best = filtered or efficient(solution)
     source = filtered or solution
     within = replace(source, covariance=best.covariance, systematic=best.systematic)
     # Optima that explain the record alike predict the response to its input alike.
@@ -226,7 +217,7 @@ def report(
         correlated=correlated(best.covariance_cr[:N, :N]),
         condition=solution.influence.condition,
         airspeed_m_s=airspeed_m_s,
-        notes=notes(solution, prepared, aircraft, sound, best=best, priced=not quick),
+        notes=notes(solution, prepared, aircraft, sound, best=best),
         theta_of_lowest_cost=None if best.theta is solution.theta else solution.theta,
         instruments=(*_given(given), *(x.reported for x in sound if x.reported is not None)),
         fixed=tuple(solution.problem.fixed),
@@ -236,7 +227,7 @@ def report(
         gust_rad=None if forces is None else forces.gust_rad,
         filtered=filtered is not None,
         servo_lag_s=best.problem.servo.lag_s,
-        prediction={} if quick else prediction_band(best.assembly, best, predicted),
+        prediction=prediction_band(best.assembly, best, predicted),
     )
 
 

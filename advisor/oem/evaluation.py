@@ -85,7 +85,6 @@ def errors_of(
     *,
     fitted: FloatArray | None = None,
     prior_share: float | None = None,
-    noise: Coloured | None = None,
     kept: int | None = None,
 ) -> dict[str, Any] | None:
     """Return the fields of ``Evaluated`` that hold errors; None on numerical overflow.
@@ -106,8 +105,6 @@ def errors_of(
     prior_share
         Factor on the standard deviation of ``prior`` in a white-noise fit, as in ``extra.Prior``. None if the
         prior has no error.
-    noise
-        Noise model that is used instead of a new fit.
     kept
         Number of the first extra parameters that get errors; by default all.
     """
@@ -120,9 +117,8 @@ def errors_of(
     if prior_share is not None:
         pulled = effect.shared_inverse * (np.sqrt(prior) / prior_share)[assembly.common, None]
         from_priors = pulled.T @ pulled + from_priors
-    if noise is None:
-        colours = colours_of(assembly, residual, g)
-        noise = Coloured(colours, widening(assembly, effect.rows, colours))
+    colours = colours_of(assembly, residual, g)
+    noise = Coloured(colours, widening(assembly, effect.rows, colours))
     systematic = np.zeros((effect.rows.shape[1],) * 2)
     if fitted is not None:
         systematic = model_error(assembly, fitted, residual, g, extra, noise.colours, effect.rows)

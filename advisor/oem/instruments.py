@@ -138,8 +138,6 @@ ACCELEROMETER_ARM = Instrument("accelerometer_arm_m", 1e-3, -100.0, 100.0, _plac
 STEADY_MOMENT = Instrument(
     "steady_moment_rad", 1e-4, -0.5, 0.5, lambda problem: Prior(problem.steady_moment_rad, STEADY_MOMENT_RAD)
 )
-OF_ALPHA = ("vane_arm_m", "alpha_delay_s")
-"""Instruments of the angle of attack. Instruments of α change Z_α, Z_q and Z_δe."""
 BY_NAME: Mapping[InstrumentName, Instrument] = {
     x.name: x for x in (SERVO_LAG, COMMAND_DELAY, VANE_ARM, ALPHA_DELAY, ACCELEROMETER_ARM, STEADY_MOMENT)
 }

@@ -32,7 +32,6 @@ def notes(
     identified: Sequence[Identified],
     *,
     best: Solution,
-    priced: bool,
 ) -> tuple[str, ...]:
     """Return the notes on an estimate, one sentence each.
 
@@ -40,7 +39,6 @@ def notes(
     ----------
     identified : instrument parameters that the data determine.
     best : the solution of the values: ``solution``, the efficient one or filter error's.
-    priced : state the cost of missing channels in numbers.
     """
     sentences = [
         _outputs(solution, prepared),
@@ -54,7 +52,7 @@ def notes(
         _vane(aircraft),
         _weighed(solution, best),
         _correlated(solution),
-        _missing(solution, prepared, priced),
+        _missing(solution, prepared),
     ]
     return tuple(sentence for sentence in sentences if sentence)
 
@@ -191,11 +189,11 @@ def _correlated(solution: Solution) -> str:
     )
 
 
-def _missing(solution: Solution, prepared: Prepared, priced: bool) -> str:
+def _missing(solution: Solution, prepared: Prepared) -> str:
     if "a_z" not in prepared.missing:
         return ""
     return (
         "The fit lacks the vertical acceleration, which needs a_z and air speed. Z_alpha, Z_q, Z_delta_e and"
         " M_q depend on the delay and the arm of the angle of attack. Give alpha.vane_arm_m for a vane."
-        + in_words(price(solution) if priced else None)
+        + in_words(price(solution))
     )

@@ -17,7 +17,6 @@ from advisor.model.outputs import SHARED
 from advisor.oem.axis.estimator import estimate_axis
 from advisor.oem.driven_motion.estimate import driven, driven_without_alpha
 from advisor.oem.estimator import estimate_jointly
-from advisor.oem.following import Follower
 from advisor.oem.instrument_fit import PITCH
 from advisor.oem.prepare import Prepared, prepare
 from advisor.oem.prior import about_zero
@@ -25,7 +24,7 @@ from advisor.oem.solution import Solution, solve
 
 
 def warm() -> None:
-    """Estimate a small flight in every way: alone, jointly, with moving air, and during flight."""
+    """Estimate a small flight in every way: alone, jointly, and with moving air."""
     maneuver = _flown()
     prepared = prepare([maneuver], Aircraft())
     solution = solve(prepared.problem) if isinstance(prepared, Prepared) else None
@@ -33,7 +32,6 @@ def warm() -> None:
         for estimate in (driven, driven_without_alpha):
             estimate(solution, PITCH, (), lambda *_: about_zero(np.zeros(len(SHARED))))
     estimate_jointly([maneuver, maneuver], Aircraft())
-    Follower(Aircraft()).refresh(maneuver)
     estimate_axis(LATERAL, [_rolled(maneuver)], Aircraft())
 
 

@@ -59,23 +59,13 @@ class Prepared:
     """Mean measured air speed over the manoeuvres, m/s."""
 
 
-def prepare(
-    maneuvers: Sequence[Maneuver],
-    aircraft: Aircraft,
-    alpha_left_out: str | None = None,
-) -> Prepared | NoEstimate:
-    """Return the estimation problem, or the reason why there is none.
-
-    Parameters
-    ----------
-    alpha_left_out : result of ``why_left_out``, where it is known already.
-    """
+def prepare(maneuvers: Sequence[Maneuver], aircraft: Aircraft) -> Prepared | NoEstimate:
+    """Return the estimation problem, or the reason why there is none."""
     for maneuver in maneuvers:
         missing = _missing(maneuver)
         if missing is not None:
             return missing
-    if alpha_left_out is None:
-        alpha_left_out = why_left_out(maneuvers, aircraft)
+    alpha_left_out = why_left_out(maneuvers, aircraft)
     if alpha_left_out and not all(can_do_without(m, aircraft) for m in maneuvers):
         if not all(_has(m.channels, "alpha") for m in maneuvers):
             return _no_alpha(maneuvers, aircraft, alpha_left_out)

@@ -8,7 +8,6 @@ import numpy as np
 
 from advisor.model.axis import Names
 from advisor.model.short_period import NAMES
-from advisor.oem.covariance import Coloured
 from advisor.oem.estimate import NoEstimate
 from advisor.oem.evaluation import Evaluated, errors_of
 from advisor.oem.extra import Extra
@@ -63,11 +62,7 @@ class Solution(Evaluated):
 
 
 def solve(
-    problem: OutputErrorProblem,
-    *,
-    begin: tuple[FloatArray, FloatArray] | None = None,
-    noise: Coloured | None = None,
-    flat: float = FLAT,
+    problem: OutputErrorProblem, *, begin: tuple[FloatArray, FloatArray] | None = None
 ) -> Solution | NoEstimate:
     """Estimate the parameters of a short-period problem.
 
@@ -75,11 +70,9 @@ def solve(
     ----------
     begin : shared (7,) and local (m, 7) parameters to start from, e.g. of an earlier, shorter
         solution; by default the regression of ``start``.
-    noise : noise model of a recent solution, which is used instead of a new fit.
-    flat : promised change of log J per sample at which Gauss-Newton stops.
     """
-    assembly, optimum = search(problem, begin=begin, flat=flat)
-    return refused(optimum) or evaluate(problem, assembly, optimum, noise=noise)
+    assembly, optimum = search(problem, begin=begin)
+    return refused(optimum) or evaluate(problem, assembly, optimum)
 
 
 def refused(optimum: Optimum) -> NoEstimate | None:
@@ -100,7 +93,13 @@ def refused(optimum: Optimum) -> NoEstimate | None:
 def search(
     problem: OutputErrorProblem, *, begin: tuple[FloatArray, FloatArray] | None = None, flat: float = FLAT
 ) -> tuple[Assembly, Optimum]:
-    """Return the optimum of a problem, whatever its status, for the arguments of ``solve``."""
+    """Return the optimum of a problem, whatever its status.
+
+    Parameters
+    ----------
+    begin : parameters to start from, as in ``solve``.
+    flat : promised change of log J per sample at which Gauss-Newton stops.
+    """
     assembly = assemble(problem)
     floor = noise_floor(assembly)
     data = (assembly.grid, assembly.z, assembly.channel, assembly.owner, assembly.free, floor)
@@ -121,7 +120,6 @@ def evaluate(
     assembly: Laid,
     optimum: Optimum,
     extra: Extra | None = None,
-    noise: Coloured | None = None,
     kept: int | None = None,
     *,
     prior: Priors | None = None,
@@ -132,7 +130,7 @@ def evaluate(
 
     Parameters
     ----------
-    extra, noise, kept : arguments of ``evaluation.errors_of``.
+    extra, kept : arguments of ``evaluation.errors_of``.
     prior : priors of the derivatives, whose errors count. None: the priors of the short period, whose errors
         do not.
     final : whether the errors contain dynamics that the model lacks; a solution on the way to another one
@@ -147,7 +145,6 @@ def evaluate(
         precision(problem, optimum.shared) if prior is None else prior.precision,
         fitted=optimum.fitted if final else None,
         prior_share=None if prior is None else prior.share,
-        noise=noise,
         kept=kept,
     )
     if errors is None:

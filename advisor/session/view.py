@@ -95,14 +95,11 @@ def report_before_first(aircraft: Aircraft, title: str) -> SessionReport:
 def view_sideways(view: View) -> View:
     """Return the view of roll and yaw. If roll and yaw are not judged, return the given view.
 
-    The manoeuvre that is being flown is estimated for the elevator only.
+    Only a manoeuvre of the elevator is followed while it is being flown.
     """
     if view.state.lateral is None:
         return view
     others = tuple(problem for problem in view.state.no_data if problem.code not in OF_ELEVATOR)
-    state = replace(
-        view.state,
-        shown="lateral", flying=None, settling=None, readable=False, enough=None, no_data=others,
-    )  # fmt: skip
+    state = replace(view.state, shown="lateral", flying=None, no_data=others)
     problems = tuple(problem for problem in view.problems if problem.code not in OF_ELEVATOR)
     return replace(view, state=state, problems=problems, elevator=view)

@@ -76,12 +76,12 @@ def _by_verdicts(view: View, is_old: bool) -> Advice:
     complete = verdict.decision == "stop" if plan is None else plan.is_complete
     if view.obstacles and not complete and not is_old:
         return Advice("NO DATA", f"{view.obstacles[0]}{_another(view)}{_elevator(view)}", "bad")
-    if state.enough:
-        return Advice("RECOVER", state.enough, "good")
     if state.arriving is not None and state.arriving.is_enough:
         return Advice("ENOUGH", "Each derivative of this input is within its tolerance: let go.", "good")
     if complete:
         return Advice("TEST COMPLETE", verdict.sentence, "good")
+    if state.is_recorded:
+        return Advice("RECOVER", "The free response is recorded: recover.", "good")
     if state.vehicle is None:
         return Advice("WAIT", view.health.sentence, "quiet")
     if not (state.serves or is_old or _is_flown(view)):

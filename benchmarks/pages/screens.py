@@ -34,7 +34,7 @@ async def picture(log: Path, aircraft_file: Path | None, face: Face, after: int,
         return [columns for batch in read_whole_log(log) for columns in batch]
 
     player = LogPlayer(log.name, load, inf)
-    conductor = Conductor(player, lambda by_hand: Campaign(aircraft, settle=True, by_hand=by_hand))
+    conductor = Conductor(player, lambda by_hand: Campaign(aircraft, informs=True, by_hand=by_hand))
     app = AdvisorApp(conductor, aircraft, log.name, Tempo(speed=inf), Settings(theme, face))
     async with app.run_test(size=SIZES[face]) as pilot:
         app.conductor.jump(after + 1)
@@ -42,7 +42,7 @@ async def picture(log: Path, aircraft_file: Path | None, face: Face, after: int,
         while app.view.health.condition != "ended":
             await pilot.pause(0.02)
             state = app.view.state
-            if len(state.maneuvers) >= after and state.flying and state.settling:
+            if len(state.maneuvers) >= after and state.flying:
                 app.action_pause()
                 break
         await pilot.pause(0.3)

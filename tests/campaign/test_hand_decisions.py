@@ -201,7 +201,7 @@ def numbers(judged: JudgedManeuver) -> list[object]:
 
 def test_decisions_made_in_flight_and_read_back_from_their_file_decide_the_same(log: Path) -> None:
     begin_s, end_s = (span.start_s for span in spans())
-    live, marked = Campaign(Aircraft(), settle=True), False
+    live, marked = Campaign(Aircraft(), informs=True), False
     for batch in read_tlog(log, chunk_bytes=20_000):
         live.feed(batch)
         now_s, marking = live.state.now_s, live.state.marking_since_s is not None

@@ -8,7 +8,6 @@ import pytest
 from advisor.aircraft.aircraft import Aircraft
 from advisor.flight.elevator.elevator_sign import turned
 from advisor.flight.maneuvers.maneuver import CONTROLS, Maneuver
-from advisor.flight.vehicle.surfaces import Scale
 from advisor.model.axes.lateral import LATERAL
 from advisor.oem.axis.problem import AxisProblem, lay_out
 from advisor.oem.estimate import Estimate
@@ -69,14 +68,6 @@ def test_a_record_keeps_the_commands_of_two_seconds_before_it(heard: Heard) -> N
 def test_a_reversed_elevator_is_reversed_before_the_record_too(heard: Heard) -> None:
     maneuver = heard.maneuvers[1]
     np.testing.assert_array_equal(turned(maneuver).before["elevator"].y, -maneuver.before["elevator"].y)
-
-
-def test_another_scale_counts_before_the_record_too(heard: Heard) -> None:
-    maneuver = replace(heard.maneuvers[1], scale=Scale())
-    whole = maneuver.rescaled(Scale(1000.0, 1520.0, 2000.0)).command("elevator").y
-    assert whole == pytest.approx(
-        Scale(1000.0, 1520.0, 2000.0).deflection(Scale().pulses(maneuver.command("elevator").y))
-    )
 
 
 def test_a_servo_follows_the_earlier_command_exactly() -> None:

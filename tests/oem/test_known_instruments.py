@@ -6,9 +6,8 @@ import numpy as np
 import pytest
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.aircraft.controls import Elevator
 from advisor.oem import evaluation
-from advisor.oem.estimator import estimate, estimate_jointly, lag_is_unknown
+from advisor.oem.estimator import estimate, estimate_jointly
 from advisor.oem.extra import Prior
 from advisor.oem.known_instruments import FoundInstruments, found_of, with_found
 from tests.oem.test_instruments import SPEED, equipped
@@ -63,11 +62,8 @@ def test_what_the_instruments_cause_grows_with_the_speed_as_the_derivatives_do()
 
 def test_the_crew_s_own_aircraft_tells_no_instruments():
     assert found_of(OPEN) is None
-    assert lag_is_unknown(OPEN)
     told = with_found(OPEN, FoundInstruments(("servo_lag_s",), np.ones(1), np.ones(1), np.eye(8), None))
-    assert not lag_is_unknown(told)
     assert replace(told, found=None) == with_found(OPEN, None)
-    assert not lag_is_unknown(replace(OPEN, elevator=Elevator(lag_s=0.0)))
 
 
 def of_one_lag(prior: Prior | None) -> FoundInstruments:

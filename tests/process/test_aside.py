@@ -72,7 +72,7 @@ def timeline_of_two() -> Timeline:
 def flown(aside: bool) -> tuple[Campaign, list[str]]:
     """Fly two manoeuvres to the end, and return the campaign with the decisions that it told."""
     timeline = timeline_of_two()
-    campaign, told = Campaign(Aircraft(), settle=True, lateral=True, aside=aside), list[str]()
+    campaign, told = Campaign(Aircraft(), informs=True, lateral=True, aside=aside), list[str]()
     for k in range(1, int(timeline.duration_s) + 2):
         events = campaign.feed(timeline.up_to(float(k)))
         told += [event.flight_test.sentence for event in events if isinstance(event, ManeuverJudged)]
@@ -98,7 +98,7 @@ def test_the_state_goes_on_while_a_manoeuvre_is_judged(monkeypatch: pytest.Monke
 
     monkeypatch.setattr(ElevatorCampaign, "take", slowly)
     timeline = timeline_of_two()
-    campaign = Campaign(Aircraft(), settle=True, lateral=True, aside=True)
+    campaign = Campaign(Aircraft(), informs=True, lateral=True, aside=True)
     at_s = 0.0
     while not campaign.state.judging:
         campaign.feed(timeline.up_to(at_s := at_s + 0.5))
@@ -127,7 +127,7 @@ def test_the_information_of_the_input_in_the_air_delays_no_state(monkeypatch: py
     found = Arriving(1e6, {"M_alpha": 90.0})
     monkeypatch.setattr(ArrivingInformation, "follow", lambda *_: found if gate.wait(60.0) else None)
     timeline = timeline_of_two()
-    campaign = Campaign(Aircraft(), settle=True, lateral=True, aside=True)
+    campaign = Campaign(Aircraft(), informs=True, lateral=True, aside=True)
     at_s = 0.0
     while campaign.state.flying is None:
         campaign.feed(timeline.up_to(at_s := at_s + 0.5))

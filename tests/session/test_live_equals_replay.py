@@ -57,7 +57,7 @@ def test_a_flight_followed_live_with_a_mark_and_its_recording_with_the_file_besi
     tmp_path: Path,
 ) -> None:
     recording = tmp_path / "live.tlog"
-    campaign = Campaign(Aircraft(), settle=True)
+    campaign = Campaign(Aircraft(), informs=True)
     flight = Demonstration("linear", 30.0, 5, recording)
     source, begun = LinkSource(flight, flight.over), False
     while (columns := source.read(0.05)) is not None:

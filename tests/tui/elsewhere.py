@@ -67,7 +67,7 @@ def campaign(by_hand: ByHand = NOTHING) -> "Campaign":
     """A real one."""
     from advisor.campaign.campaign import Campaign
 
-    return Campaign(Aircraft(), settle=True, by_hand=by_hand)
+    return Campaign(Aircraft(), informs=True, by_hand=by_hand)
 
 
 def staged(by_hand: ByHand) -> StagedCampaign:

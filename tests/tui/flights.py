@@ -196,8 +196,6 @@ def state(flown: int = 7, bad: tuple[int, ...] = (2,), in_the_air: bool = False)
         channels=channels,
         axes={"pitch": AxisState(maneuvers, verdict, model)},
         flying=flying,
-        settling=judged(flown + 1).estimate if flying else None,  # type: ignore[arg-type]
-        readable=flying is not None,
         whole_flight=_whole(maneuvers, now_s),
         notices=("      –  following ardupilot 1/1", *notices),
         serves=True,
@@ -224,7 +222,7 @@ def _in_the_air(number: int) -> Maneuver:
     span = Span(
         whole.span.record_from_s,
         whole.span.start_s,
-        whole.span.start_s,
+        end_s,
         end_s,
         whole.span.kind,
         whole.span.steps,

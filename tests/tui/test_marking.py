@@ -67,7 +67,7 @@ def opened(log: Path, speed: float, settings: Settings) -> tuple[AdvisorApp, Log
     player = LogPlayer(log.name, lambda: columns, speed, keep_beside=[log])
 
     def make(by_hand: ByHand) -> Campaign:
-        return Campaign(Aircraft(), settle=True, by_hand=by_hand)
+        return Campaign(Aircraft(), informs=True, by_hand=by_hand)
 
     conductor = Conductor(player, make, read_by_hand(log))
     return AdvisorApp(conductor, Aircraft(), log.name, Tempo(speed=speed), settings), player

@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import pytest
 
+from advisor.campaign.state import CampaignState
 from advisor.decision.arriving import Arriving
 from advisor.decision.inputs import StepInput
 from advisor.flight.signals.instrument_finding import InstrumentFinding
@@ -14,7 +15,7 @@ from advisor.tui.advice import advise
 from advisor.tui.panes.criterion import share_of_limit
 from advisor.tui.panes.last_verdict import for_the_pilot
 from advisor.tui.panes.limits_now import limits_now
-from advisor.tui.panes.pilot import BigWord, how_far
+from advisor.tui.panes.pilot import BigWord, flying_in_words, how_far
 from advisor.tui.stick_drawing import stick_drawing, stick_line
 from advisor.words.problems import Problem
 from tests.campaign.side_builders import judged
@@ -28,6 +29,14 @@ GOOD = LinkHealth("good", "412 messages/s.")
 LOST = LinkHealth("lost", "Nothing heard for 4 s.")
 
 
+def after_the_input(flown: int, free_s: float = 3.5) -> CampaignState:
+    """Return a state with the free response of a manoeuvre in the air."""
+    state = flights.state(flown, in_the_air=True)
+    assert state.flying is not None
+    span = replace(state.flying.span, last_step_s=state.flying.span.end_s - free_s)
+    return replace(state, flying=replace(state.flying, span=span))
+
+
 def view(state=None, health: LinkHealth = GOOD) -> View:
     return View(state or flights.state(3), health, None, flights.AIRCRAFT, "a link")
 
@@ -39,13 +48,27 @@ def view(state=None, health: LinkHealth = GOOD) -> View:
         (flights.state(3), "CONTINUE"),
         (flights.state(3, bad=(3,)), "REPEAT"),
         (flights.state(7), "TEST COMPLETE"),
-        (replace(flights.state(3), enough="Enough: recover."), "RECOVER"),
+        (after_the_input(3), "RECOVER"),
+        (after_the_input(3, free_s=2.0), "CONTINUE"),
+        (after_the_input(7), "TEST COMPLETE"),
         (replace(flights.state(2), arriving=Arriving(60.0, {"M_alpha": 98.0})), "ENOUGH"),
         (replace(flights.state(0), vehicle=None), "WAIT"),
     ],
 )
 def test_the_word_follows_the_verdicts(state, word: str):
     assert advise(view(state)).word == word
+
+
+@pytest.mark.parametrize(
+    ("state", "words"),
+    [
+        (flights.state(3, in_the_air=True), "flown 4 s of 8"),
+        (after_the_input(3, free_s=2.0), "flown 4 s of 8; hold the stick still"),
+        (after_the_input(3), "flown 4 s of 8; recover"),
+    ],
+)
+def test_after_the_input_the_pilot_holds_still_until_the_response_is_recorded(state, words: str):
+    assert flying_in_words(view(state)) == words
 
 
 def test_a_lost_link_is_the_word_where_no_manoeuvre_was_judged():
@@ -57,7 +80,7 @@ def test_a_lost_link_is_the_word_where_no_manoeuvre_was_judged():
     ("state", "word"),
     [
         (flights.state(7), "TEST COMPLETE"),
-        (replace(flights.state(3), enough="Enough: recover."), "RECOVER"),
+        (after_the_input(3), "RECOVER"),
         (flights.state(3, bad=(3,)), "REPEAT"),
         (replace(flights.state(3), no_data=(Problem("rate", "Nothing arrives.", "Wait."),)), "CONTINUE"),
     ],
@@ -96,7 +119,7 @@ SLOW = Problem("rate", "ATTITUDE arrives at 4.0 Hz, too slow.", "Ask for 50 Hz."
 
 @pytest.mark.parametrize("flown", [0, 3])
 def test_data_that_cannot_serve_are_told_at_any_time_with_their_mend(flown: int):
-    advice = advise(view(replace(flights.state(flown), no_data=(SLOW,), enough="Enough: recover.")))
+    advice = advise(view(replace(after_the_input(flown), no_data=(SLOW,))))
     assert (advice.word, advice.sentence) == ("NO DATA", str(SLOW))
 
 

@@ -21,7 +21,7 @@ async def test_a_flight_over_a_real_link_is_followed_to_the_stop():
     campaigns: list[Campaign] = []
 
     def make(by_hand: ByHand) -> Campaign:
-        campaigns.append(Campaign(Aircraft(), settle=True, by_hand=by_hand))
+        campaigns.append(Campaign(Aircraft(), informs=True, by_hand=by_hand))
         return campaigns[-1]
 
     app = AdvisorApp(Conductor(source, make), Aircraft(), "demonstration", None, Settings(screen="engineer"))

@@ -7,7 +7,6 @@ from advisor.campaign.axis_campaign import AxisCampaign
 from advisor.campaign.hand_decisions import ByHand
 from advisor.campaign.instruments import as_known_by
 from advisor.campaign.joint_estimate import NEWEST, Together
-from advisor.campaign.late_limits import Recount
 from advisor.campaign.learning import lag_said, may_learn, of_another_power_on
 from advisor.campaign.learning import learnt as learnt_from
 from advisor.campaign.single_maneuver import assess
@@ -38,15 +37,6 @@ class ElevatorCampaign(AxisCampaign):
         self._told_by: set[tuple[int, int]] = set()
         self._say = say
         self._together = Together(aircraft)
-
-    def count_anew(self, again: Recount) -> None:
-        """Scale manoeuvres by an elevator limit that arrived late, and omit those that become useless."""
-        for maneuver in again.anew:
-            self._replace(maneuver)
-        for number in again.lost:
-            flown = self._of(number)
-            flown.exclude(flown.examined.excluded_because or again.heard)
-        self.decide()
 
     def decide(self) -> None:
         """Judge all manoeuvres, and examine them again if they have given new values of the instruments."""

@@ -4,7 +4,6 @@ from dataclasses import dataclass, replace
 from math import nan
 
 from advisor.flight.maneuvers.maneuver import InputKind, Maneuver
-from advisor.flight.vehicle.surfaces import Surface
 from advisor.flight.vehicle.vehicle import Vehicle
 from advisor.words.axes import AxisName
 from advisor.words.printable import printable
@@ -131,18 +130,6 @@ class Notice:
 
 
 @dataclass(frozen=True, slots=True)
-class ElevatorRescaled:
-    """A parameter of the elevator's scale is received late, after another value was assumed."""
-
-    before: Surface
-    after: Surface
-    heard: str
-    """Name and value of the received parameter, with the time of its arrival."""
-    flight: int = 0
-    """Number of the campaign's log or link, 0 for the first."""
-
-
-@dataclass(frozen=True, slots=True)
 class VehicleSaid:
     """A vehicle, or another sender on the link, has sent a text (STATUSTEXT)."""
 
@@ -185,7 +172,6 @@ FlightEvent = (
     | ManeuverAgain
     | Activity
     | Notice
-    | ElevatorRescaled
     | VehicleSaid
     | NoData
     | DataAgain

@@ -153,22 +153,6 @@ class Maneuver:
         )
         return replace(self, channels=channels, before=before)
 
-    def rescaled(self, scale: Scale) -> "Maneuver":
-        """Return the manoeuvre with the elevator's pulses converted by another scale, in the direction found.
-        The manoeuvre must have a scale."""
-        assert self.scale is not None
-        before, after = self.scale, replace(scale, reversed=self.scale.reversed)
-        elevator = self.channels.get("elevator")
-        if elevator is None or before == after:
-            return replace(self, scale=after)
-        levels = elevator.y[0] + np.array([0.0, *(level for _, level in self.span.steps)])
-        trim, *stepped = after.deflection(before.pulses(levels)).tolist()
-        steps = tuple(
-            (onset, level - trim) for (onset, _), level in zip(self.span.steps, stepped, strict=True)
-        )
-        whole = self.deflected(lambda y: after.deflection(before.pulses(y)))
-        return replace(whole, scale=after, span=replace(self.span, steps=steps))
-
 
 _AGREE_RAD = 3e-4
 """Largest median difference of pitch angle, rad, between two records of one manoeuvre. A log with a

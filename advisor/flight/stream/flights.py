@@ -8,7 +8,6 @@ from itertools import groupby
 from advisor.aircraft.aircraft import Aircraft
 from advisor.flight.maneuvers.events import (
     Activity,
-    ElevatorRescaled,
     FlightBegan,
     FlightEvent,
     ManeuverAgain,
@@ -177,7 +176,7 @@ class Flights:
                     through.append(self._once(maneuver, "pitch", ManeuverFlown))
                 case SideManeuverFlown(maneuver):
                     through.append(self._once(maneuver, "lateral", SideManeuverFlown))
-                case Activity() | ElevatorRescaled():
+                case Activity():
                     through.append(replace(event, flight=self.flight))
                 case VehicleFound(vehicle):
                     through += [event, *self._compare_vehicles(vehicle)]

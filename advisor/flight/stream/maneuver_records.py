@@ -74,7 +74,7 @@ class ManeuverRecords:
             leapt_s=self._breaks.leapt_s(span.record_from_s, span.end_s),
             scale=counted.scale if (counted := self._who.outputs.counted.get("elevator")) else None,
         )
-        return self._who.outputs.rescaled(maneuver), evidence
+        return maneuver, evidence
 
     def of_sides(self, span: Span, boot: int, up_to_order: int | None) -> tuple[Maneuver, Evidence]:
         """Return the record of a lateral manoeuvre, with its evidence about the instruments."""

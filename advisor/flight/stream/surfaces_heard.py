@@ -1,7 +1,7 @@
 """Outputs and scales of the control surfaces, from the parameters received so far.
 
-The first test input of a power-on fixes the pulse scales, because no linkage changes in flight. A limit
-received later applies to whole manoeuvres, so that no manoeuvre has a step at its arrival.
+The first test input of a power-on fixes the elevator's pulse scale, because no linkage changes in flight. A
+limit received later waits for the next power-on, so that no manoeuvre has a step at its arrival.
 """
 
 from dataclasses import replace
@@ -11,10 +11,9 @@ from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft.controls import Elevator
 from advisor.flight.elevator.axes.side_controls import find_side_control
 from advisor.flight.elevator.elevator_outputs import find_elevator
-from advisor.flight.maneuvers.events import READER_NOTICE, ElevatorRescaled, FlightEvent, Notice
-from advisor.flight.maneuvers.maneuver import Maneuver
+from advisor.flight.maneuvers.events import READER_NOTICE, FlightEvent, Notice
 from advisor.flight.signals.messages import Columns
-from advisor.flight.vehicle.parameters import Parameters, read_by
+from advisor.flight.vehicle.parameters import Parameters, Sender, Stated, read_by
 from advisor.flight.vehicle.surfaces import Surface
 from advisor.flight.vehicle.vehicle import Vehicle, VehicleFinder
 from advisor.flight.vehicle.wiring import Wiring
@@ -37,22 +36,24 @@ class SurfacesHeard:
     def __init__(self, aircraft: Aircraft, parameters: Parameters, finder: VehicleFinder) -> None:
         self._aircraft, self._parameters, self._finder = aircraft, parameters, finder
         self._taken: Elevator | None = None
-        self._held: Surface | None = None
         self._said = ""
         self._said_of: set[tuple[str, float]] = set()
+        self._late: dict[tuple[Sender, str], Stated] = {}
         self.elevator: Surface | Problem = self._found()
         """Outputs and scale of the elevator from all parameters, or the reason why they are unknown."""
         self.counted: dict[str, Surface] = {}
-        """Elevator, aileron and rudder with their present pulse scales, if known."""
+        """Elevator, aileron and rudder with their pulse scales, if known."""
 
     def follow(self) -> list[FlightEvent]:
         """Find the surfaces of another vehicle."""
-        self._taken, self._held = None, None
+        self._taken = None
         return self._settle()
 
     def begin(self) -> None:
         """Begin another power-on, whose pulse scales use all received limits."""
-        self._held = None
+        for (sender, name), stated in self._late.items():
+            self._parameters.keep(sender, name, stated)
+        self._late.clear()
         self._count()
 
     def take(self, output: int) -> list[FlightEvent]:
@@ -64,20 +65,15 @@ class SurfacesHeard:
         """Return whether the elevator's outputs of a vehicle are known."""
         return isinstance(find_elevator(self._aircraft.elevator, self._wiring(vehicle)), Surface)
 
-    def rescaled(self, maneuver: Maneuver) -> Maneuver:
-        """Return a manoeuvre whose pulses are converted by all received limits."""
-        scale = self.elevator.scale if isinstance(self.elevator, Surface) else None
-        return maneuver if scale is None or maneuver.scale is None else maneuver.rescaled(scale)
-
     def hear(self, columns: Columns, now_s: float, flown: bool) -> list[FlightEvent]:
-        """Take parameter messages, and return an event for each change of a surface's calibration.
+        """Take parameter messages, and return a notice for each change of the elevator's calibration.
 
         Parameters
         ----------
         now_s
             Vehicle time of the newest sample, s since boot.
         flown
-            Whether this power-on has a test input, after which the pulse scales are fixed.
+            Whether this power-on has a test input, after which the elevator's pulse scale is fixed.
         """
         vehicle, sender = self._vehicle, (columns.system, columns.component)
         events: list[FlightEvent] = []
@@ -86,22 +82,18 @@ class SurfacesHeard:
             if vehicle is None or sender not in speakers(vehicle):
                 continue
             was, now = self.elevator, self._found()
-            if isinstance(was, Surface) and (isinstance(now, Problem) or now.parts != was.parts):
+            if isinstance(was, Surface) and _moves_otherwise(was, now):
                 at = f" at {clock(now_s)}" if isfinite(now_s) else ""
                 value = read_by(vehicle.autopilot, stated)
-                counts = not flown or (before is None and _follows(was, now))
                 if before is not None:
                     old = read_by(vehicle.autopilot, before)
-                    events += self._notice(name, value, _changed(name, old, value, at, counts))
-                elif not counts:
+                    events += self._notice(name, value, _changed(name, old, value, at, not flown))
+                elif flown:
                     events += self._notice(name, value, _too_late(name, value, at))
-                elif isinstance(now, Surface):
-                    events.append(ElevatorRescaled(was, now, f"{name} {value:g} is heard only{at}"))
-                if not counts:
+                    self._late[sender, name] = stated
+                if flown:
                     self._parameters.keep(sender, name, before)
                     continue
-                if flown:
-                    self._held = self.counted.get("elevator")
             events += self._settle()
         return events
 
@@ -158,7 +150,7 @@ class SurfacesHeard:
             self.counted = {}
             return
         surfaces = {
-            "elevator": self._held or self.elevator,
+            "elevator": self.elevator,
             "aileron": find_side_control("aileron", self._aircraft.aileron, wiring),
             "rudder": find_side_control("rudder", self._aircraft.rudder, wiring),
         }
@@ -174,11 +166,16 @@ class SurfacesHeard:
         return [Notice("elevator_scale", said)]
 
 
-def _follows(was: Surface, now: Surface | Problem) -> bool:
-    """Return whether the old and the new scale have the same single output with the same direction."""
-    if isinstance(now, Problem) or now.outputs != was.outputs or now.scale is None or was.scale is None:
-        return False
-    return now.scale.reversed == was.scale.reversed
+def _moves_otherwise(was: Surface, now: Surface | Problem) -> bool:
+    """Return whether other outputs or scales drive a surface now.
+
+    A stated direction that equals the assumed one is no change.
+    """
+    if isinstance(now, Problem):
+        return True
+    return [replace(part, sure=False) for part in now.parts] != [
+        replace(part, sure=False) for part in was.parts
+    ]
 
 
 def _changed(name: str, old: float, value: float, at: str, counts: bool) -> str:

@@ -45,12 +45,6 @@ class Scale:
         up = np.divide(away, stroke, out=np.zeros(np.shape(away)), where=stroke > 0.0)
         return np.asarray(self._full_rad * up)
 
-    def pulses(self, angle_rad: FloatArray) -> FloatArray:
-        """Return the pulses in us for the given surface deflections."""
-        up = angle_rad / self._full_rad
-        stroke = np.where(up < 0.0, self.trim_us - self.low_us, self.high_us - self.trim_us)
-        return np.asarray(self.trim_us + stroke * up)
-
 
 @dataclass(frozen=True, slots=True)
 class Calibration:

@@ -1,19 +1,16 @@
-"""Pane of the manoeuvre in flight: its curves and its running estimate."""
+"""Pane of the manoeuvre in flight: its curves and the information that arrives."""
 
 from math import floor
 
 from textual.app import ComposeResult
 from textual.events import Resize
 
-from advisor.campaign.state import CampaignState
 from advisor.decision.arriving import WITHIN_PERCENT, Arriving
 from advisor.flight.maneuvers.maneuver import Maneuver
-from advisor.oem.estimate import Estimate
-from advisor.report.facts.estimates import estimated_parameter
 from advisor.session.view import View
 from advisor.tui.panes.lines import Lines
 from advisor.tui.panes.pane import Pane
-from advisor.tui.panes.pilot import bar
+from advisor.tui.panes.pilot import bar, flying_in_words
 from advisor.tui.plot.chart import Chart, Ink, Series
 from advisor.tui.plot.widget import Plot
 from advisor.words.quantities import channel, symbol
@@ -32,18 +29,17 @@ class Live(Pane):
     HELP = """\
 # Live
 
-The manoeuvre in the air: measured (dots) and the model fitted so far (line), as it comes in,
-and the moment derivatives with their 95 % intervals once the input is over, the servo is
-known and they agree with the manoeuvres before. When further free response adds nothing, the pane says
-so: recover. A bar for each derivative shows the information of the input in the air, with that of the
-manoeuvres before. All bars full: ENOUGH, let go. Between manoeuvres nothing moves here; the last trace stays.
+The samples of the manoeuvre in the air, as they come in. After the input the pane says how long to
+hold the stick still, and when to recover. A bar for each derivative shows the information of the
+input in the air, with that of the manoeuvres before. All bars full: ENOUGH, let go. Between manoeuvres
+nothing moves here; the last trace stays.
 """
 
     def compose(self) -> ComposeResult:
         """Yield a line of numbers above three plots."""
         yield Lines(
             "No manoeuvre is being flown; the curves begin with the first step of the elevator.",
-            id="settling",
+            id="progress",
         )
         yield Lines("", id="arrived")
         for name in TRACES:
@@ -52,18 +48,18 @@ manoeuvres before. All bars full: ENOUGH, let go. Between manoeuvres nothing mov
 
     def show(self, view: View) -> None:
         """Draw the manoeuvre in flight. Between manoeuvres the last curves remain."""
-        flying, settling = view.state.flying, view.state.settling
+        flying = view.state.flying
         if flying is None or view.health.condition == "ended":
             if self.border_subtitle:
-                self.query_one("#settling", Lines).write("No manoeuvre is being flown; the last curves stay.")
+                self.query_one("#progress", Lines).write("No manoeuvre is being flown; the last curves stay.")
             self.subtitle("")
             self._write_arrived([])
             return
         self.subtitle(f"in the air: manoeuvre {flying.number}")
-        self.query_one("#settling", Lines).write(view.state.enough or _settling_in_words(view.state))
+        self.query_one("#progress", Lines).write(flying_in_words(view))
         self._write_arrived(arrived_in_words(view.state.arriving))
         for name, ink in TRACES.items():
-            self.query_one(f"#live-{name}", Plot).chart = _trace(flying, settling, name, ink)
+            self.query_one(f"#live-{name}", Plot).chart = _trace(flying, name, ink)
 
     def _write_arrived(self, lines: list[str]) -> None:
         """Write the bars of the arriving information, or hide their lines."""
@@ -79,17 +75,13 @@ manoeuvres before. All bars full: ENOUGH, let go. Between manoeuvres nothing mov
             self.query_one(f"#live-{name}").display = k < count
 
 
-def _trace(flying: Maneuver, settling: Estimate | None, name: str, ink: Ink) -> Chart:
+def _trace(flying: Maneuver, name: str, ink: Ink) -> Chart:
     quantity, start_s = channel(name), flying.span.start_s
     samples = flying.channels.get(name)
     if samples is None or len(samples) == 0:
         return Chart(quantity.label, "t [s]", why_empty="no samples in this manoeuvre so far.")
     measured = Series("measured", samples.t - start_s, samples.y * quantity.factor, ink, "points")
-    fit = settling.fits[0].get(name) if settling else None
-    if fit is None:
-        return Chart(quantity.label, "t [s]", series=(measured,))
-    fitted = Series("fitted so far", fit.t - start_s, fit.fitted * quantity.factor, "fitted")
-    return Chart(quantity.label, "t [s]", series=(measured, fitted))
+    return Chart(quantity.label, "t [s]", series=(measured,))
 
 
 def arrived_in_words(arrived: Arriving | None) -> list[str]:
@@ -111,12 +103,3 @@ def _full(percent: float) -> float:
     tolerance.
     """
     return floor(_BAR * WITHIN_PERCENT / max(percent, 1.0)) / _BAR
-
-
-def _settling_in_words(state: CampaignState) -> str:
-    settling = state.settling
-    if settling is None or not state.readable:
-        return f"{state.progress}; estimates appear after the input, if they agree with the tests before."
-    names = ("M_alpha", "M_q", "M_delta_e", "Z_alpha")
-    rows = [estimated_parameter(name, "Manoeuvre in the air", settling, {}) for name in names]
-    return "   ".join(f"{row.name} {row.cell}" for row in rows)

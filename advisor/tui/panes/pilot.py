@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 
+from advisor.campaign.state import CampaignState
 from advisor.decision.verdict import FlightTestVerdict
 from advisor.decision.verdict import NextInput as Advised
 from advisor.session.view import View
@@ -128,9 +129,16 @@ def flying_in_words(view: View) -> str:
         return f"marked by hand for {view.state.now_s - marked_s:.0f} s"
     if view.state.flying is None:
         return "the last manoeuvre is being judged" if view.state.judging else "between manoeuvres"
-    arrived = view.state.arriving
-    enough = arrived is not None and arrived.is_enough
-    return f"{view.state.progress}; ENOUGH: let go" if enough else view.state.progress
+    return f"{view.state.progress}{_of_the_stick(view.state)}"
+
+
+def _of_the_stick(state: CampaignState) -> str:
+    """Return what the stick does now in a manoeuvre; empty while the input goes on."""
+    if state.arriving is not None and state.arriving.is_enough:
+        return "; ENOUGH: let go"
+    if state.flying is None or not state.flying.span.input_is_over:
+        return ""
+    return "; recover" if state.is_recorded else "; hold the stick still"
 
 
 class CrewNotes(Part, HangingLines):

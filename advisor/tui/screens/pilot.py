@@ -28,7 +28,7 @@ The large word is what to do now:
 
 - **CONTINUE**: fly the next manoeuvre.
 - **REPEAT**: the last manoeuvre is rejected; the line below gives the reason and the remedy.
-- **RECOVER**: further response of the manoeuvre in the air adds nothing.
+- **RECOVER**: the free response of the manoeuvre in the air is recorded.
 - **ENOUGH**: with the input in the air each derivative is within its tolerance; let go.
 - **TEST COMPLETE**: the criterion fell below its limit. A later rejected manoeuvre is **NOT USED**.
 - **WAIT**, **NO LINK**, **BEHIND**: no data are judged, or this computer is late. After a first verdict the

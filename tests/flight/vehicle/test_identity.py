@@ -3,7 +3,7 @@
 import pytest
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.flight.maneuvers.events import READER_NOTICE, ElevatorRescaled
+from advisor.flight.maneuvers.events import READER_NOTICE
 from advisor.flight.stream.identity import Identity
 from advisor.flight.vehicle.surfaces import Surface
 from tests.flight.columns import Wire, heartbeat, parameter
@@ -49,7 +49,8 @@ def after_a_change(name, value, flown):
     heartbeat(wire, 0.0)
     for at_s, (_, key, number) in enumerate((*BEFORE, (1, name, value)), start=1):
         parameter(wire, float(at_s), key, number)
-    events = [identity.learn(wire.columns([row]), 10.0, flown) for row in range(len(wire))][-1]
+    last = len(wire) - 1
+    events = [identity.learn(wire.columns([row]), 10.0, flown and row == last) for row in range(last + 1)][-1]
     return identity.outputs.elevator, [e.text for e in events if getattr(e, "code", "") == READER_NOTICE]
 
 
@@ -81,31 +82,33 @@ def heard_late(*before, late):
     return identity, events[-1]
 
 
-def test_a_limit_of_a_single_output_that_is_heard_late_counts_and_leaves_the_pulses_as_they_are_counted():
-    identity, events = heard_late(("SERVO2_FUNCTION", 19.0), late=("SERVO2_MIN", 1000.0))
-    (rescaled,) = (event for event in events if isinstance(event, ElevatorRescaled))
-    assert rescaled.heard == "SERVO2_MIN 1000 is heard only at 0:10.0"
-    assert rescaled.after == identity.outputs.elevator
-    assert identity.outputs.elevator.scale.low_us == 1000.0
-    assert identity.outputs.counted["elevator"].scale.low_us == 1100.0
-    identity.outputs.begin()
-    assert identity.outputs.counted["elevator"] == identity.outputs.elevator
-
-
-@pytest.mark.parametrize("function", [77.0, 19.0])
-def test_a_late_limit_of_one_of_several_outputs_waits_for_the_next_power_on_and_is_said(function):
-    pair = (("SERVO1_FUNCTION", function), ("SERVO2_FUNCTION", 78.0 if function == 77.0 else 19.0))
-    identity, events = heard_late(*pair, late=("SERVO2_MIN", 1000.0))
-    (notice,) = events
+@pytest.mark.parametrize(
+    "roles",
+    [
+        (("SERVO2_FUNCTION", 19.0),),
+        (("SERVO1_FUNCTION", 77.0), ("SERVO2_FUNCTION", 78.0)),
+        (("SERVO1_FUNCTION", 19.0), ("SERVO2_FUNCTION", 19.0)),
+    ],
+)
+def test_a_limit_that_is_heard_late_waits_for_the_next_power_on_and_is_said(roles):
+    identity, (notice,) = heard_late(*roles, late=("SERVO2_MIN", 1000.0))
     assert notice.text.startswith("SERVO2_MIN 1000 is heard only at 0:10.0: the value assumed before counts")
     assert identity.outputs.elevator == identity.outputs.counted["elevator"]
-    assert identity.outputs.elevator.parts[1].scale.low_us == 1100.0
+    assert identity.outputs.elevator.parts[-1].scale.low_us == 1100.0
+    identity.outputs.begin()
+    assert identity.outputs.counted["elevator"].parts[-1].scale.low_us == 1000.0
 
 
 def test_a_direction_that_is_heard_late_waits_for_the_next_power_on():
     identity, (notice,) = heard_late(("SERVO2_FUNCTION", 19.0), late=("SERVO2_REVERSED", 1.0))
     assert "SERVO2_REVERSED 1 is heard only" in notice.text
     assert not identity.outputs.elevator.scale.reversed
+
+
+def test_a_direction_that_is_heard_as_it_was_assumed_changes_nothing():
+    identity, events = heard_late(("SERVO2_FUNCTION", 19.0), late=("SERVO2_REVERSED", 0.0))
+    assert events == []
+    assert identity.outputs.counted["elevator"].parts[0].sure
 
 
 @pytest.mark.parametrize("flown", [False, True])

@@ -5,55 +5,21 @@ from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft.controls import Elevator
 from advisor.aircraft.reference import PARAMETERS
 from advisor.flight.maneuvers.maneuver import Maneuver
-from advisor.oem.estimate import Estimate, NoEstimate
+from advisor.oem.estimate import NoEstimate
 from advisor.oem.estimator import estimate
-from advisor.oem.following import Follower
 from advisor.oem.identifiability import natural_size
 from advisor.report.document import identifiability
-from tests.maneuvers import changed
 from tests.oem.builders import JET, UAV, elevator_3211, flown, maneuver, trim_alpha, trim_elevator
 
 AIRCRAFT = Aircraft(elevator=Elevator(lag_s=0.0))
 
 
-def so_far(maneuver, until_s, number=1):
+def so_far(maneuver, until_s):
     channels = {name: channel.cut(-1.0, until_s) for name, channel in maneuver.channels.items()}
-    return Maneuver(number, maneuver.boot, maneuver.span, channels, maneuver.mode)
+    return Maneuver(1, maneuver.boot, maneuver.span, channels, maneuver.mode)
 
 
-def test_the_refreshed_estimate_is_the_complete_one():
-    flight = flown(JET, noise=0.03)
-    follower = Follower(AIRCRAFT)
-    for until in np.arange(9.0, 14.0, 0.25):
-        followed = follower.refresh(so_far(flight, until))
-    whole = estimate(so_far(flight, until), AIRCRAFT)
-    assert isinstance(followed, Estimate)
-    np.testing.assert_allclose(followed.theta, whole.theta, atol=0.01 * whole.std.min(), rtol=1e-3)
-    np.testing.assert_allclose(followed.std_cr, whole.std_cr, rtol=1e-3)
-    np.testing.assert_allclose(followed.std, whole.std, rtol=0.2)
-
-
-def test_a_refresh_allows_for_a_command_that_acts_late():
-    flight = flown(JET, noise=0.03)
-    flight = changed(flight, "elevator", t=flight.channels["elevator"].t - 0.015)
-    followed = Follower(AIRCRAFT).refresh(flight)
-    assert isinstance(followed, Estimate)
-    np.testing.assert_array_less(np.abs(followed.theta - JET)[5:], 3.0 * followed.std[5:])
-
-
-def test_following_begins_anew_with_the_next_manoeuvre():
-    follower = Follower(AIRCRAFT)
-    follower.refresh(so_far(flown(JET, noise=0.02), 14.0, number=1))
-    other = follower.refresh(so_far(flown(UAV, unit_s=0.4, noise=0.02), 9.0, number=2))
-    assert isinstance(other, Estimate)
-    assert other.value("M_alpha") == pytest.approx(-48.0, rel=0.05)
-
-
-def test_too_little_flown_is_a_value():
-    assert isinstance(Follower(AIRCRAFT).refresh(so_far(flown(JET), 0.2)), NoEstimate)
-
-
-def test_errors_shrink_while_the_manoeuvre_is_flown():
+def test_errors_shrink_as_a_manoeuvre_grows():
     flight = flown(JET, noise=0.03)
     early, late = (estimate(so_far(flight, until), AIRCRAFT) for until in (6.0, 12.0))
     assert np.all(late.std_cr < early.std_cr)
