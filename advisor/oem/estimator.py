@@ -10,7 +10,6 @@ from advisor.aircraft.reference import PARAMETERS
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.oem.driven_motion.estimate import Driven, driven, driven_without_alpha
 from advisor.oem.edges import large_steps, with_edges
-from advisor.oem.efficient import efficient
 from advisor.oem.equation_error import equation_error
 from advisor.oem.estimate import ChannelFit, Estimate, InstrumentEstimate, NoEstimate
 from advisor.oem.gained import told, without_term
@@ -202,16 +201,14 @@ def report(
     ----------
     identified : instrument parameters of the fit.
     forces : estimate with unknown forces, where output error is not valid.
-    quick : leave out what takes milliseconds: the cost of missing channels, and the efficient estimate.
+    quick : leave out what takes milliseconds: the cost of missing channels, and the band of the prediction.
     """
     sound = [x for x in identified if x.instrument.name not in solution.problem.terms]
     filtered = None if forces is None else forces.solution
-    best = filtered or (solution if quick else efficient(solution))
     source = filtered or solution
-    within = replace(source, covariance=best.covariance, systematic=best.systematic)
     # Optima that explain the record alike predict the response to its input alike.
-    predicted = within.widened if source.alike is None else replace(within, modes=None).widened
-    best = replace(best, covariance=within.widened)
+    predicted = source.widened if source.alike is None else replace(source, modes=None).widened
+    best = replace(source, covariance=source.widened)
     airspeed_m_s = solution.problem.reference_airspeed_m_s or prepared.airspeed_m_s
     given, rows = found_of(aircraft), [x.row for x in identified]
     common = np.zeros((N, N)) if given is None else given.covariance_at(airspeed_m_s)

@@ -39,7 +39,7 @@ def notes(
     Parameters
     ----------
     identified : instrument parameters that the data determine.
-    best : the solution of the values: ``solution``, the efficient one or filter error's.
+    best : the solution of the values: ``solution``, or filter error's.
     priced : state the cost of missing channels in numbers.
     """
     sentences = [
