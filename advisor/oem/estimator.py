@@ -201,7 +201,7 @@ def report(
     ----------
     identified : instrument parameters of the fit.
     forces : estimate with unknown forces, where output error is not valid.
-    quick : leave out what takes milliseconds: the cost of missing channels, and the band of the prediction.
+    quick : leave out the band of the prediction, which takes milliseconds.
     """
     sound = [x for x in identified if x.instrument.name not in solution.problem.terms]
     filtered = None if forces is None else forces.solution
@@ -223,7 +223,7 @@ def report(
         correlated=correlated(best.covariance_cr[:N, :N]),
         condition=solution.influence.condition,
         airspeed_m_s=airspeed_m_s,
-        notes=notes(solution, prepared, aircraft, sound, best=best, priced=not quick),
+        notes=notes(solution, prepared, aircraft, sound, best=best),
         theta_of_lowest_cost=None if best.theta is solution.theta else solution.theta,
         instruments=(*_given(given), *(x.reported for x in sound if x.reported is not None)),
         fixed=tuple(solution.problem.fixed),
