@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from math import nan
-from typing import ClassVar, NamedTuple, Self
+from typing import ClassVar, Self
 
 import numpy as np
 
@@ -70,14 +70,6 @@ class InstrumentEstimate:
     """Standard deviation of ``unstated_value``, corrected for coloured residuals."""
     contradicts: bool = False
     """Whether the data exclude the stated value; ``value`` then comes from the data."""
-
-
-class Regressed(NamedTuple):
-    """A derivative by equation error."""
-
-    value: float
-    std: float
-    """Standard deviation, corrected for coloured residuals, without the bias of noisy regressors."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -154,8 +146,6 @@ class Estimate:
     prediction: Mapping[str, float] = field(default_factory=dict)
     """Largest half-width of each predicted output's 95 % band, over the response's peak, by the output's
     name. The mapping is empty while a manoeuvre is being flown."""
-    equation_error: Mapping[str, Regressed] = field(default_factory=dict)
-    """Derivatives by linear regression of the integrated equations, by name, for comparison."""
     terms: tuple[TermEstimate, ...] = ()
     """Terms that the user added."""
     fixed: tuple[str, ...] = ()

@@ -10,7 +10,6 @@ from advisor.aircraft.reference import PARAMETERS
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.oem.driven_motion.estimate import Driven, driven, driven_without_alpha
 from advisor.oem.edges import large_steps, with_edges
-from advisor.oem.equation_error import equation_error
 from advisor.oem.estimate import ChannelFit, Estimate, InstrumentEstimate, NoEstimate
 from advisor.oem.gained import told, without_term
 from advisor.oem.gauss_newton import CONVERGED, Optimum
@@ -101,7 +100,6 @@ class Fit:
         return replace(
             reported,
             terms=told(self.aircraft.estimation.added, values, self.fitted.solution, self._without),
-            equation_error=equation_error(self.fitted.solution.problem),
         )
 
     def _without(self, term: str) -> Solution | None:

@@ -20,7 +20,6 @@ from advisor.oem.axes.lateral.instruments import nuisances_of
 from advisor.oem.axes.lateral.motion import with_sideslip
 from advisor.oem.axes.lateral.prepare import prepare_lateral
 from advisor.oem.axes.lateral.solution import Near, Searched, lateral_not_identifiable, search_lateral
-from advisor.oem.equation_error import lateral_equation_error
 from advisor.oem.estimate import NoEstimate
 from advisor.oem.estimator import channel_fits
 from advisor.oem.flying_qualities import Quality
@@ -120,8 +119,7 @@ class LateralFit(NamedTuple):
         solution = self.searched.solution
         # Innovations have another colour than residuals, so that the fits before unknown forces are compared.
         terms = told(self.aircraft.estimation.added, solution.nuisances, self.searched.still, self._without)
-        regressed = lateral_equation_error(solution.problem)
-        return replace(_reported(solution), terms=terms, equation_error=regressed)
+        return replace(_reported(solution), terms=terms)
 
     def _without(self, term: str) -> Solution | None:
         """Return the solution without one of the user's terms; None without such a solution."""

@@ -35,8 +35,8 @@ def lateral_start(problem: LateralProblem) -> tuple[FloatArray, FloatArray]:
     names = LATERAL.names
     shared, local = np.zeros(len(names.shared)), np.zeros((len(problem.records), len(names.local)))
     has_force = ["a_y" in record.outputs for record in problem.records]
-    whole = lateral_equations(problem).values()
-    for (columns, parts), records in zip(lateral_equations(_in_parts(problem)).items(), whole, strict=True):
+    whole = _equations(problem).values()
+    for (columns, parts), records in zip(_equations(_in_parts(problem)).items(), whole, strict=True):
         if parts:
             letter = columns[0][0]
             shared[[names.shared.index(name) for name in columns]] = regressed(parts)[0]
@@ -61,7 +61,7 @@ def _in_parts(problem: LateralProblem) -> LateralProblem:
     return replace(problem, records=tuple(parts))
 
 
-def lateral_equations(problem: LateralProblem) -> dict[tuple[str, ...], list[Equations]]:
+def _equations(problem: LateralProblem) -> dict[tuple[str, ...], list[Equations]]:
     """Return the regression equations of all records, by the names of the equation's derivatives."""
     prepared = [_Motion(record, problem) for record in problem.records]
     by_letter = {"Y": [m.force() for m in prepared if m.has_force]}
