@@ -21,7 +21,6 @@ from scipy.signal import lsim
 from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft.controls import Elevator
 from advisor.aircraft.reference import PARAMETERS
-from advisor.bundled.study.batch import solve_many
 from advisor.flight.maneuvers.events import ManeuverFlown
 from advisor.flight.maneuvers.maneuver import Maneuver, Span
 from advisor.flight.signals.record import Channel
@@ -350,19 +349,6 @@ def scale() -> None:
         print(f"  {count:4d} manoeuvres {1e3 * seconds:8.2f} ms = {seconds / base / count:.2f} x linear")
 
 
-def batch() -> None:
-    data = make()
-    rng = np.random.default_rng(5)
-    spread = NOISE * clean()[2][:SAMPLES].std(axis=0)
-    z = clean()[2][:SAMPLES] + spread * rng.standard_normal((4000, SAMPLES, 2))
-    elevator = Signal(data.t, data.u)
-    solve_many(elevator, data.t, z[:9, :, 0], z[:9, :, 1])
-    seconds = cpu(lambda: solve_many(elevator, data.t, z[:, :, 0], z[:, :, 1]))
-    print(
-        f"\nBatch of {len(z)} manoeuvres of {SAMPLES} samples: {len(z) / seconds:.0f} solves per core-second"
-    )
-
-
 def follow() -> None:
     """Load of estimating anew at each of 50 samples a second while the manoeuvre is being flown."""
     data = make()
@@ -405,7 +391,6 @@ def main() -> None:
     print(f"{len(PARAMETERS)} parameters and 2 initial states, {SAMPLES} samples of alpha and q, CPU time\n")
     race()
     scale()
-    batch()
     follow()
 
 
