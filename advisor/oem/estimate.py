@@ -125,9 +125,6 @@ class Estimate:
     """Air speed of the derivatives, m/s; None without a measured air speed."""
     notes: tuple[str, ...] = ()
     """Sentences that inform the user about these values."""
-    theta_of_lowest_cost: FloatArray | None = None
-    """Shape (8,): parameters at the lowest cost, if they differ from ``theta``. In moving
-    air the smallest error lies at another point (``driven_motion``)."""
     instruments: tuple[InstrumentEstimate, ...] = ()
     """Instrument parameters that the data determine, with the values of this estimate."""
     found: FoundInstruments | None = None

@@ -222,7 +222,6 @@ def report(
         condition=solution.influence.condition,
         airspeed_m_s=airspeed_m_s,
         notes=notes(solution, prepared, aircraft, sound, best=best),
-        theta_of_lowest_cost=None if best.theta is solution.theta else solution.theta,
         instruments=(*_given(given), *(x.reported for x in sound if x.reported is not None)),
         fixed=tuple(solution.problem.fixed),
         found=FoundInstruments.of(rows, source.widened, airspeed_m_s) if rows else None,
