@@ -18,7 +18,6 @@ from scipy.optimize import least_squares, minimize
 from scipy.signal import lsim
 
 from advisor.aircraft.reference import PARAMETERS
-from advisor.bundled.study.batch import solve_many
 from advisor.model.outputs import N_PARAMETERS
 from advisor.model.response import respond
 from advisor.oem.problem import OutputErrorProblem, Record
@@ -340,24 +339,10 @@ def scale() -> None:
         print(f"  {count:4d} manoeuvres {1e3 * seconds:8.2f} ms = {seconds / base / count:.2f} x linear")
 
 
-def batch() -> None:
-    data = make()
-    rng = np.random.default_rng(5)
-    spread = NOISE * clean()[2][:SAMPLES].std(axis=0)
-    z = clean()[2][:SAMPLES] + spread * rng.standard_normal((4000, SAMPLES, 2))
-    elevator = Signal(data.t, data.u)
-    solve_many(elevator, data.t, z[:9, :, 0], z[:9, :, 1])
-    seconds = cpu(lambda: solve_many(elevator, data.t, z[:, :, 0], z[:, :, 1]))
-    print(
-        f"\nBatch of {len(z)} manoeuvres of {SAMPLES} samples: {len(z) / seconds:.0f} solves per core-second"
-    )
-
-
 def main() -> None:
     print(f"{len(PARAMETERS)} parameters and 2 initial states, {SAMPLES} samples of alpha and q, CPU time\n")
     race()
     scale()
-    batch()
 
 
 if __name__ == "__main__":

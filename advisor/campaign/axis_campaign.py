@@ -176,7 +176,7 @@ class AxisCampaign(ABC):
     def _judged(self) -> None:
         """Judge the manoeuvres and the flight test from the examinations of the manoeuvres."""
         history = self._examinations
-        verdicts = judge_campaign(history, self._plan, self._course)
+        verdicts = judge_campaign(history, self._plan)
         self.judged = tuple(
             flown.judged(verdict) for flown, verdict in zip(self._flown, verdicts, strict=True)
         )

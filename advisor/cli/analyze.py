@@ -31,8 +31,7 @@ if TYPE_CHECKING:
     "--all",
     "every_movement",
     is_flag=True,
-    help="List also the elevator movements that were no test inputs, equation error next to output "
-    "error, and the course of every rule.",
+    help="List also the elevator movements that were no test inputs, and the course of every rule.",
 )
 @click.option(
     "--axis",

@@ -5,9 +5,7 @@ from math import degrees, floor
 
 from advisor.aircraft.aircraft import CampaignPlan, Rule
 from advisor.decision.consistency import USUAL, Outlier, outliers
-from advisor.decision.course import CriterionCourse
 from advisor.decision.history import CandidateManeuver, has_begun
-from advisor.decision.larger import Larger, larger_and_agreeing
 from advisor.decision.paper_rules import MANEUVER_RULES
 from advisor.decision.pooling import posteriors_at_one_speed
 from advisor.decision.verdict import NO_TEST, ManeuverVerdict, Reason, RuleResult, with_one_remedy
@@ -18,26 +16,20 @@ COLOURED = 0.5
 """Lag-1 correlation of a residual above which moving air or a model error is assumed."""
 
 
-def judge_campaign(
-    history: Sequence[CandidateManeuver], plan: CampaignPlan, course: CriterionCourse | None = None
-) -> tuple[ManeuverVerdict, ...]:
+def judge_campaign(history: Sequence[CandidateManeuver], plan: CampaignPlan) -> tuple[ManeuverVerdict, ...]:
     """Return verdicts on all manoeuvres so far, in the order flown, each with the result of every rule.
 
     A verdict depends only on the earlier manoeuvres, except for two later influences. A manoeuvre may be
     excluded by hand. Under the rule ``information`` later manoeuvres may show that a manoeuvre contradicts
-    all others. ``course`` caches results of earlier decisions, and changes no verdict.
+    all others.
     """
-    course = course or CriterionCourse(plan)
     contradicted = contradicting(history, plan)
     by_rule = {rule: _results(history, rule, contradicted) for rule in MANEUVER_RULES}
-    accepted = [result.accepted for result in by_rule[plan.rule]]
     verdicts = []
     for i, flown in enumerate(history):
-        costly = plan.rule != "information" and not accepted[i]
-        larger = larger_and_agreeing(history[: i + 1], accepted, course) if costly else None
         rules = {name: results[i] for name, results in by_rule.items()}
         begun = has_begun(history[: i + 1])
-        verdicts.append(_verdict(flown, plan.rule, rules, contradicted.get(i), larger, begun))
+        verdicts.append(_verdict(flown, plan.rule, rules, contradicted.get(i), begun))
     return tuple(verdicts)
 
 
@@ -82,10 +74,9 @@ def _verdict(
     rule: Rule,
     rules: Mapping[Rule, RuleResult],
     outlier: Outlier | None,
-    larger: Larger | None,
     begun: bool,
 ) -> ManeuverVerdict:
-    reasons = with_one_remedy(_reasons(flown, rule, rules[rule], outlier, larger))
+    reasons = with_one_remedy(_reasons(flown, rule, rules[rule], outlier))
     notes = flown.estimate.notes if isinstance(flown.estimate, Estimate) else ()
     cautions = tuple(dict.fromkeys((*flown.cautions, *notes)))
     if flown.excluded_because is not None:
@@ -101,7 +92,7 @@ def _verdict(
 
 
 def _reasons(
-    flown: CandidateManeuver, rule: Rule, result: RuleResult, outlier: Outlier | None, larger: Larger | None
+    flown: CandidateManeuver, rule: Rule, result: RuleResult, outlier: Outlier | None
 ) -> tuple[Reason, ...]:
     if flown.excluded_because is not None:
         text = f"excluded by hand: {flown.excluded_because}"
@@ -112,8 +103,6 @@ def _reasons(
         return flown.reasons
     if rule == "information":
         return (_contradicts(outlier),) if outlier else ()
-    if larger is not None:
-        return (_only_larger(flown.estimate, larger, result.limit or 0.0),)
     return (_too_costly(flown, flown.estimate, rule, result.limit or 0.0),)
 
 
@@ -162,16 +151,6 @@ def _too_costly(flown: CandidateManeuver, estimate: Estimate, rule: Rule, limit:
     than = "no better than half of the earlier ones" if rule == "separate" else _LESS_WELL
     cost = _of_limit(estimate.cost, limit)
     text = f"the model explains it {than}, {cost}; {_another_try(flown, estimate, rule)}"
-    return Reason("cost", text, estimate.cost, limit)
-
-
-def _only_larger(estimate: Estimate, larger: Larger, limit: float) -> Reason:
-    motion = f"the motion of manoeuvre {larger.setter}" if larger.setter else "the usual motion"
-    text = (
-        f"refused by the paper's rule only, {_of_limit(estimate.cost, limit)}: it was flown with "
-        f"{larger.ratio:.1f} times {motion}, and its estimate agrees with the others; fly it again with "
-        "smaller steps, or decide by the rule information"
-    )
     return Reason("cost", text, estimate.cost, limit)
 
 

@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from math import nan
-from typing import ClassVar, NamedTuple, Self
+from typing import ClassVar, Self
 
 import numpy as np
 
@@ -72,14 +72,6 @@ class InstrumentEstimate:
     """Whether the data exclude the stated value; ``value`` then comes from the data."""
 
 
-class Regressed(NamedTuple):
-    """A derivative by equation error."""
-
-    value: float
-    std: float
-    """Standard deviation, corrected for coloured residuals, without the bias of noisy regressors."""
-
-
 @dataclass(frozen=True, slots=True)
 class TermEstimate:
     """Coefficient of a term that the user added."""
@@ -133,9 +125,6 @@ class Estimate:
     """Air speed of the derivatives, m/s; None without a measured air speed."""
     notes: tuple[str, ...] = ()
     """Sentences that inform the user about these values."""
-    theta_of_lowest_cost: FloatArray | None = None
-    """Shape (8,): parameters at the lowest cost, if they differ from ``theta``. With coloured noise or in
-    moving air the smallest error lies at another point (``efficient``, ``driven_motion``)."""
     instruments: tuple[InstrumentEstimate, ...] = ()
     """Instrument parameters that the data determine, with the values of this estimate."""
     found: FoundInstruments | None = None
@@ -154,8 +143,6 @@ class Estimate:
     prediction: Mapping[str, float] = field(default_factory=dict)
     """Largest half-width of each predicted output's 95 % band, over the response's peak, by the output's
     name. The mapping is empty while a manoeuvre is being flown."""
-    equation_error: Mapping[str, Regressed] = field(default_factory=dict)
-    """Derivatives by linear regression of the integrated equations, by name, for comparison."""
     terms: tuple[TermEstimate, ...] = ()
     """Terms that the user added."""
     fixed: tuple[str, ...] = ()

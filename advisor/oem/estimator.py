@@ -10,8 +10,6 @@ from advisor.aircraft.reference import PARAMETERS
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.oem.driven_motion.estimate import Driven, driven, driven_without_alpha
 from advisor.oem.edges import large_steps, with_edges
-from advisor.oem.efficient import efficient
-from advisor.oem.equation_error import equation_error
 from advisor.oem.estimate import ChannelFit, Estimate, InstrumentEstimate, NoEstimate
 from advisor.oem.gained import told, without_term
 from advisor.oem.gauss_newton import CONVERGED, Optimum
@@ -102,7 +100,6 @@ class Fit:
         return replace(
             reported,
             terms=told(self.aircraft.estimation.added, values, self.fitted.solution, self._without),
-            equation_error=equation_error(self.fitted.solution.problem),
         )
 
     def _without(self, term: str) -> Solution | None:
@@ -197,12 +194,10 @@ def report(
     """
     sound = [x for x in identified if x.instrument.name not in solution.problem.terms]
     filtered = None if forces is None else forces.solution
-    best = filtered or efficient(solution)
     source = filtered or solution
-    within = replace(source, covariance=best.covariance, systematic=best.systematic)
     # Optima that explain the record alike predict the response to its input alike.
-    predicted = within.widened if source.alike is None else replace(within, modes=None).widened
-    best = replace(best, covariance=within.widened)
+    predicted = source.widened if source.alike is None else replace(source, modes=None).widened
+    best = replace(source, covariance=source.widened)
     airspeed_m_s = solution.problem.reference_airspeed_m_s or prepared.airspeed_m_s
     given, rows = found_of(aircraft), [x.row for x in identified]
     common = np.zeros((N, N)) if given is None else given.covariance_at(airspeed_m_s)
@@ -218,7 +213,6 @@ def report(
         condition=solution.influence.condition,
         airspeed_m_s=airspeed_m_s,
         notes=notes(solution, prepared, aircraft, sound, best=best),
-        theta_of_lowest_cost=None if best.theta is solution.theta else solution.theta,
         instruments=(*_given(given), *(x.reported for x in sound if x.reported is not None)),
         fixed=tuple(solution.problem.fixed),
         found=FoundInstruments.of(rows, source.widened, airspeed_m_s) if rows else None,

@@ -21,7 +21,6 @@ from typing import NamedTuple
 import numpy as np
 
 from advisor.aircraft.reference import PARAMETERS
-from advisor.flight.instruments.lateness import CLOCKS_S
 from advisor.model.outputs import N_PARAMETERS, SHARED
 from advisor.model.response import respond
 from advisor.model.short_period import NAMES
@@ -31,7 +30,7 @@ from advisor.oem.estimate import InstrumentEstimate, NoEstimate
 from advisor.oem.evaluation import share_of
 from advisor.oem.extra import Prior, penalty
 from advisor.oem.gauss_newton import CONVERGED, MOST_ITERATIONS
-from advisor.oem.instruments import COMMAND_DELAY, SERVO_LAG, Instrument, extra_of
+from advisor.oem.instruments import SERVO_LAG, Instrument, extra_of
 from advisor.oem.prior import about_zero, precision, usual_moments
 from advisor.oem.problem import ASSUMED_M_S, Assembly, OutputErrorProblem, assemble
 from advisor.oem.profile import ALIKE_NATS, Posterior, profiled
@@ -47,9 +46,6 @@ as much as what is left."""
 MODEL_ERROR = 1e-3
 """Numerical: error of the model's outputs, relative to their spread. A surface with a lag is taken as linear
 between the grid's stamps (``surface``)."""
-MEASURED_LAG_S = 0.005
-"""Standard deviation of a stated lag of zero, s, if only a command before its stamps contradicts the zero.
-The filter of a surface's sensor delays the measured surface by at most 5 ms, one period of 200 Hz."""
 SAME_SENSOR_S = 0.002
 """Standard deviation of the delay between specific force and pitch rate, s, which one sensor measures. The
 stamps of two messages are rounded to 1 ms. The messages leave the autopilot's loop up to some milliseconds
@@ -285,17 +281,14 @@ def _with_statements(
 
     ``others`` are starts on the other hills of the posterior.
     """
-    alone = _uncancelled(identified_at(solution, names))
+    alone = identified_at(solution, names)
     white = np.sqrt(np.diag(solution.covariance_cr)[N:])
-    if all((x.instrument.stated is None or x.found.contradicts) and not _cancels(x, alone) for x in alone):
+    if all(x.instrument.stated is None or x.found.contradicts for x in alone):
         return InstrumentFit(solution, alone, not others)
     kept, problem = [], solution.problem
     for identified, white_std in zip(alone, white, strict=True):
         x, value = identified
         share = min(1.0, float(white_std) / value.std)
-        if _cancels(identified, alone):
-            kept.append(identified._replace(instrument=replace(x, prior=Prior(0.0, MEASURED_LAG_S, share))))
-            continue
         if x.stated is None or value.contradicts:
             kept.append(identified._replace(instrument=weighed(x, share)))
             continue
@@ -313,27 +306,6 @@ def _with_statements(
         return InstrumentFit(plain)
     final = _whole_posterior(final, left, others)
     return InstrumentFit(final, refreshed(kept, final), not others)
-
-
-def _cancels(identified: Identified, all_of_them: Sequence[Identified]) -> bool:
-    """Return whether a delay of the command cancels a lag that is stated as zero or not stated.
-
-    Neither a command nor a measured surface acts before its own record. If a lag and a negative delay cancel,
-    the delay alone describes their sum.
-    """
-    x, value = identified
-    delays = [other.found.value for other in all_of_them if other.instrument.name == COMMAND_DELAY.name]
-    early = bool(delays) and delays[0] < -CLOCKS_S
-    return x.name == SERVO_LAG.name and x.stated in (0.0, None) and early and value.value > 0.0
-
-
-def _uncancelled(alone: tuple[Identified, ...]) -> tuple[Identified, ...]:
-    """Return the instruments. A lag that a delay cancels does not count as a contradiction of a
-    stated zero.
-    """
-    return tuple(
-        x._replace(found=replace(x.found, contradicts=False)) if _cancels(x, alone) else x for x in alone
-    )
 
 
 def refreshed(identified: Sequence[Identified], solution: Solution) -> tuple[Identified, ...]:

@@ -12,7 +12,6 @@ from advisor.oem.identifiability import correlated
 from advisor.oem.instrument_fit import CONTRADICTS, Identified
 from advisor.oem.instruments import KNOWN_TO
 from advisor.oem.known_instruments import found_of
-from advisor.oem.missing import in_words, price
 from advisor.oem.prepare import Prepared
 from advisor.oem.solution import Solution
 from advisor.words.quantiles import NORMAL_95
@@ -38,7 +37,7 @@ def notes(
     Parameters
     ----------
     identified : instrument parameters that the data determine.
-    best : the solution of the values: ``solution``, the efficient one or filter error's.
+    best : the solution of the values: ``solution``, or filter error's.
     """
     sentences = [
         _outputs(solution, prepared),
@@ -52,7 +51,7 @@ def notes(
         _vane(aircraft),
         _weighed(solution, best),
         _correlated(solution),
-        _missing(solution, prepared),
+        _missing(prepared),
     ]
     return tuple(sentence for sentence in sentences if sentence)
 
@@ -189,11 +188,10 @@ def _correlated(solution: Solution) -> str:
     )
 
 
-def _missing(solution: Solution, prepared: Prepared) -> str:
+def _missing(prepared: Prepared) -> str:
     if "a_z" not in prepared.missing:
         return ""
     return (
         "The fit lacks the vertical acceleration, which needs a_z and air speed. Z_alpha, Z_q, Z_delta_e and"
         " M_q depend on the delay and the arm of the angle of attack. Give alpha.vane_arm_m for a vane."
-        + in_words(price(solution))
     )

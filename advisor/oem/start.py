@@ -39,7 +39,7 @@ def start(
     shared = np.zeros(N_SHARED)
     for output, first in (("alpha", 0), ("q", 1)):
         moment = output == "q"
-        parts = equations(problem, output)
+        parts = _equations(problem, output)
         if lift_from_alpha_only and not moment:
             parts = [Equations(p.common[:, :1], p.side - p.common[:, 1], p.own) for p in parts]
         theta, own = regressed(parts)
@@ -57,7 +57,7 @@ def start(
     return shared, local
 
 
-def equations(problem: OutputErrorProblem, output: str) -> list[Equations]:
+def _equations(problem: OutputErrorProblem, output: str) -> list[Equations]:
     """Return the integrated equation of ``alpha`` or ``q`` of each record, for a regression."""
     moment, parts = output == "q", []
     for record in problem.records:

@@ -99,6 +99,4 @@ def with_intervals(estimate: Estimate) -> dict[str, Any]:
             half = NORMAL_95 * entry["std"]
             ci95 = [entry["value"] - half, entry["value"] + half]
         document[name] = {**entry, "ci95": ci95}
-        if name in estimate.equation_error:
-            document[name]["equation_error"] = plain(estimate.equation_error[name]._asdict())
     return document | terms_of(estimate)

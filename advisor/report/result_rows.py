@@ -6,9 +6,8 @@ from typing import Any
 from advisor.aircraft.reference import PARAMETERS, SIDE_PARAMETERS
 from advisor.campaign.state import CampaignState, JudgedManeuver, LateralState
 from advisor.flight.signals.track import ChannelStatus
-from advisor.oem.equation_error import CAVEAT
 from advisor.oem.estimate import Estimate
-from advisor.report.facts.estimates import EstimatedParameter, estimated_parameter, of_all
+from advisor.report.facts.estimates import EstimatedParameter, of_all
 from advisor.report.qualities import reference_speed
 from advisor.report.table import Table, digits
 from advisor.words.digits import signed, with_half
@@ -78,18 +77,6 @@ def structure_table(estimate: Estimate, name: str) -> Iterator[Table]:
             ("parameter or term", "value ± 95 %", "log likelihood gained", "unit"),
             tuple(rows), frozenset({1, 2}),
         )  # fmt: skip
-
-
-def regression_table(estimate: Estimate, name: str) -> Iterator[Table]:
-    """Yield the table that compares equation error with output error, if equation error was computed."""
-    rows = []
-    for parameter, regressed in estimate.equation_error.items():
-        here = estimated_parameter(parameter, "", estimate, {})
-        there = with_half(regressed.value, NORMAL_95 * regressed.std)
-        rows.append((here.name, there, here.cell, here.unit))
-    if rows:
-        head = ("parameter", "equation error ± 95 %", "output error ± 95 %", "unit")
-        yield Table(name, CAVEAT, head, tuple(rows), frozenset({1, 2}))
 
 
 def channel_table(name: str, caption: str, channels: Mapping[str, ChannelStatus]) -> Table:

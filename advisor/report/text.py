@@ -13,7 +13,6 @@ from advisor.campaign.state import CampaignState, JudgedManeuver, LateralState
 from advisor.decision.verdict import FlightTestVerdict
 from advisor.flight.maneuvers.events import Activity
 from advisor.flight.signals.instrument_finding import InstrumentFinding
-from advisor.oem.estimate import Estimate
 from advisor.report.axes.lateral_document import side_quality_lines
 from advisor.report.facts.decision import INDENT, WARNING, decisions
 from advisor.report.facts.estimates import structure_lines, untold
@@ -24,7 +23,6 @@ from advisor.report.result_rows import (
     channel_table,
     joint_table,
     maneuver_line,
-    regression_table,
 )
 from advisor.words.digits import counted
 from advisor.words.vehicle_time import CLOCK, clock
@@ -113,16 +111,10 @@ class AnalysisText:
             yield Text()
             yield joint.on_console(joint.caption)
             yield from map(Text, (*structure_lines(axis.model), *untold(axis.model)))
-            yield from self._regressed(axis.model)
             said = {caution for judged in axis.maneuvers for caution in judged.verdict.cautions}
             yield from (Text(f"note: {note}") for note in axis.model.notes if note not in said)
             yield from _apart(qualities)
         yield from _apart(self._rules(axis.flight_test) if axis.maneuvers else ())
-
-    def _regressed(self, model: Estimate) -> RenderResult:
-        """Yield the comparison of equation error with output error, on request."""
-        if self.every_movement:
-            yield from (t.on_console(t.caption) for t in regression_table(model, "equation-error"))
 
     def _movements(
         self, maneuvers: Sequence[JudgedManeuver], activity: Sequence[Activity], room: int = ROOM

@@ -8,7 +8,6 @@ import pytest
 from advisor.aircraft.aircraft import CampaignPlan, Rule
 from advisor.decision.course import CriterionCourse
 from advisor.decision.history import CandidateManeuver
-from advisor.decision.judge import judge_campaign
 from advisor.decision.stopping import flight_test
 from tests.decision.campaigns import drawn, estimate
 
@@ -25,7 +24,6 @@ def test_decisions_with_a_course_are_those_without(history: list[CandidateManeuv
     plan = CampaignPlan(rule=rule)
     course = CriterionCourse(plan)
     for n in range(1, len(history) + 1):
-        assert judge_campaign(history[:n], plan, course) == judge_campaign(history[:n], plan)
         assert flight_test(history[:n], plan, course=course) == flight_test(history[:n], plan)
 
 

@@ -110,35 +110,6 @@ def test_calmer_air_is_asked_for_only_where_the_air_moved() -> None:
     assert "check the instruments" in said[3]
 
 
-def moving(one: CandidateManeuver, size: float) -> CandidateManeuver:
-    """The same manoeuvre with a pitch rate of this size."""
-    assert isinstance(one.estimate, Estimate)
-    motion = size * np.sin(np.linspace(0.0, 20.0, SAMPLES))
-    fits = {name: replace(fit, measured=motion, fitted=motion) for name, fit in one.estimate.fits[0].items()}
-    return replace(one, estimate=replace(one.estimate, fits=(fits,)))
-
-
-def test_a_larger_manoeuvre_that_agrees_is_said_to_be_refused_by_the_papers_rule_only() -> None:
-    first, second = flown([1e-9, 3e-9])
-    for rule in ("continuous", "separate"):
-        plan = replace(PLAN, rule=rule)
-        sentence = judge_campaign([moving(first, 0.1), moving(second, 0.13)], plan)[-1].sentence
-        assert sentence.startswith("REPEAT: refused by the paper's rule only, cost ")
-        assert (
-            "flown with 1.3 times the motion of manoeuvre 1, and its estimate agrees with the others"
-            in sentence
-        )
-
-
-def test_neither_a_smaller_manoeuvre_nor_one_that_contradicts_is_excused() -> None:
-    first, second = flown([1e-9, 3e-9])
-    smaller = [moving(first, 0.1), moving(second, 0.1)]
-    other = CandidateManeuver(estimate(with_change("M_alpha", 1.5), cost=3e-9))
-    contradicting = [moving(first, 0.1), moving(other, 0.13)]
-    for history in (smaller, contradicting):
-        assert "refused by the paper's rule only" not in judge_campaign(history, PLAN)[-1].sentence
-
-
 def test_a_manoeuvre_that_contradicts_all_the_others_is_refused_by_the_rule_information_alone() -> None:
     rng = np.random.default_rng(2)
     history = [CandidateManeuver(drawn(rng)) for _ in range(5)]

@@ -11,7 +11,6 @@ from advisor.decision.paper_rules import scatter_percent
 from advisor.decision.stopping import flight_test
 from advisor.decision.verdict import Reason
 from tests.decision.campaigns import THETA, drawn, estimate, flown, with_change
-from tests.decision.test_judge import moving
 
 PLAN = CampaignPlan(rule="continuous")
 
@@ -106,29 +105,13 @@ def test_the_written_out_form_is_available_by_name() -> None:
     assert flight_test(history, replace(PLAN, criterion="eq13")).decision == "stop"
 
 
-def test_a_parameter_near_zero_is_named_as_what_keeps_the_criterion_up() -> None:
+def test_a_parameter_near_zero_keeps_the_papers_criterion_up() -> None:
     rng = np.random.default_rng(8)
     near_zero = THETA.copy()
     near_zero[2] = 0.0
     history = [CandidateManeuver(drawn(rng, near_zero, std_percent=2.0)) for _ in range(6)]
-    verdict = flight_test(history, PLAN)
-    assert verdict.decision == "continue"
-    assert any("relative to Z_q (" in w and "rule information" in w for w in verdict.warnings)
+    assert flight_test(history, PLAN).decision == "continue"
     assert flight_test(history, replace(PLAN, rule="information")).decision == "stop"
-
-
-def test_good_manoeuvres_refused_in_a_row_for_cost_alone_raise_a_warning() -> None:
-    verdict = flight_test(flown([1e-12, 1e-9, 1e-9, 1e-9]), PLAN)
-    assert any("3 usable manoeuvres in a row" in w for w in verdict.warnings)
-
-
-def test_a_gentle_manoeuvre_that_locks_larger_ones_out_is_named_at_once() -> None:
-    gentle, larger = (moving(one, size) for one, size in zip(flown([1e-12, 1e-9]), (0.02, 0.1), strict=True))
-    (warning,) = [w for w in flight_test([gentle, larger], PLAN).warnings if "limit" in w]
-    assert "Manoeuvre 1 sets a cost limit that larger ones can hardly meet" in warning
-    assert "moved 5.0 times as much" in warning
-    assert "Exclude manoeuvre 1, or use the rule information" in warning
-    assert flight_test([gentle, larger], replace(PLAN, rule="information")).warnings == ()
 
 
 def test_every_rule_runs_whichever_is_chosen() -> None:

@@ -14,10 +14,10 @@ from advisor.model.axes.lateral import LATERAL
 from advisor.oem.airspeed import airspeed
 from advisor.oem.axis.parameter import parameters_of
 from advisor.oem.axis.problem import AxisProblem
-from advisor.oem.estimate import Estimate, InstrumentEstimate, NoEstimate
+from advisor.oem.estimate import Estimate, NoEstimate
 from advisor.oem.estimator import estimate, estimate_jointly
 from advisor.oem.extra import Prior
-from advisor.oem.instrument_fit import Identified, _identified, _uncancelled
+from advisor.oem.instrument_fit import _identified
 from advisor.oem.instruments import COMMAND_DELAY, SERVO_LAG, unknown_instruments
 from advisor.oem.prepare import prepare
 from advisor.oem.problem import OutputErrorProblem, Record
@@ -385,24 +385,3 @@ def test_a_value_far_from_its_prior_contradicts_a_delay_and_not_a_lag_that_other
     problem = OutputErrorProblem((record,), servo=Servo(lag_s=0.2, delay_s=0.2))
     far = replace(instrument, prior=Prior(0.05, 0.01))
     assert _identified(far, problem, 0.005).found.contradicts is contradicts
-
-
-@pytest.mark.parametrize(
-    ("stated_s", "lag_s", "delay_s", "cancels"),
-    [
-        (0.0, 0.16, -0.08, True),
-        (0.0, 0.16, -0.01, False),  # within the clocks of sound records
-        (0.0, 0.04, 0.03, False),
-        (0.14, 0.16, -0.08, False),
-    ],
-)
-def test_a_lag_that_a_command_before_its_record_cancels_does_not_deny_a_stated_zero(
-    stated_s, lag_s, delay_s, cancels
-):
-    lag = Identified(
-        replace(SERVO_LAG, stated=stated_s),
-        InstrumentEstimate("servo_lag_s", lag_s, 0.01, stated_s, lag_s, 0.01, True),
-    )
-    delay = Identified(COMMAND_DELAY, InstrumentEstimate("command_delay_s", delay_s, 0.01))
-    (judged, _) = _uncancelled((lag, delay))
-    assert judged.found.contradicts is not cancels

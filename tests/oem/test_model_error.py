@@ -13,7 +13,7 @@ from advisor.oem.estimator import fit_jointly
 from advisor.oem.model_error import _filtered
 from advisor.oem.solution import Solution
 from tests.oem.builders import UAV, flown
-from tests.oem.test_efficient import flight
+from tests.oem.test_weighing import flight
 
 KNOWN = Aircraft(elevator=Elevator(lag_s=0.0))
 SHARE = 0.1

@@ -6,7 +6,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from advisor.aircraft.aircraft import CampaignPlan, Rule
-from advisor.bundled.study.batch import Batch, solve_many
 from advisor.bundled.study.flying import (
     NoiselessManeuver,
     NoiseReading,
@@ -16,14 +15,18 @@ from advisor.bundled.study.flying import (
     noise_scale,
 )
 from advisor.bundled.study.paper import ORDER
-from advisor.decision.foresight import Instruments, expect
 from advisor.decision.history import CandidateManeuver
 from advisor.decision.information import knowledge
 from advisor.decision.paper_rules import MANEUVER_RULES, scatter_percent, window
 from advisor.flight.maneuvers.maneuver import Maneuver
-from advisor.oem.estimate import ChannelFit, Estimate
+from advisor.oem.covariance import cramer_rao, influence
+from advisor.oem.estimate import Estimate
+from advisor.oem.estimator import channel_fits
+from advisor.oem.gauss_newton import CONVERGED
+from advisor.oem.problem import OutputErrorProblem, Record
 from advisor.oem.rows import Signal
-from advisor.oem.surface import Servo
+from advisor.oem.solution import reported as reported_parameters
+from advisor.oem.solution import search
 from advisor.process.arrays import FloatArray
 
 
@@ -31,6 +34,8 @@ def estimate_copies(
     flight: NoiselessManeuver, noise: FloatArray, copies: int, rng: np.random.Generator
 ) -> list[Estimate]:
     """Measure a flight ``copies`` times and estimate each measurement on its own.
+
+    Each search begins at the estimate of the copies' mean.
 
     Parameters
     ----------
@@ -43,45 +48,37 @@ def estimate_copies(
         A copy could not be estimated.
     """
     z = flight.response + noise * rng.standard_normal((copies, *flight.response.shape))
-    batch = solve_many(Signal(flight.t, flight.elevator), flight.t, z[:, :, 0], z[:, :, 1])
-    if batch.failed:
-        raise ArithmeticError(f"{batch.failed} of {copies} simulated manoeuvres could not be estimated")
-    correlation = _correlation(flight, batch)
-    return [_estimate(flight, z[i], batch, i, correlation) for i in range(copies)]
+    mean = search(_problem(flight, z.mean(axis=0)))[1]
+    return [_estimate(_problem(flight, copy), (mean.shared, mean.local)) for copy in z]
 
 
-def _correlation(flight: NoiselessManeuver, batch: Batch) -> FloatArray:
-    """Return the (8, 8) correlation of the errors, which depends only on the input."""
-    step = float(flight.t[1] - flight.t[0])
-    noise = (float(batch.noise[0, 0]), float(batch.noise[0, 1]))
-    expected = expect(
-        batch.theta[0], Signal(flight.t, flight.elevator), Instruments((step, step), noise, Servo())
-    )
-    if expected is None:
-        raise ArithmeticError("this input cannot distinguish the parameters")
-    return np.asarray(expected.covariance / np.outer(expected.std, expected.std))
+def _problem(flight: NoiselessManeuver, z: FloatArray) -> OutputErrorProblem:
+    """Return the problem of one measurement ``z``, shape (n, 2), of α and q."""
+    outputs = {name: Signal(flight.t, z[:, k]) for k, name in enumerate(("alpha", "q"))}
+    return OutputErrorProblem((Record(Signal(flight.t, flight.elevator), outputs),))
 
 
-def _estimate(
-    flight: NoiselessManeuver, z: FloatArray, batch: Batch, i: int, correlation: FloatArray
-) -> Estimate:
-    """Return the estimate of one copy. The noise is white, so that the Cramér–Rao bound is the covariance."""
-    covariance = correlation * np.outer(batch.std_cr[i], batch.std_cr[i])
-    fits = {
-        # The clean response stands for the fitted one, which differs by less than its error.
-        name: ChannelFit(name, flight.t, z[:, k], flight.response[:, k], float(batch.noise[i, k]))
-        for k, name in enumerate(("alpha", "q"))
-    }
+def _estimate(problem: OutputErrorProblem, begin: tuple[FloatArray, FloatArray]) -> Estimate:
+    """Return the estimate of one measurement. The noise is white, so that the Cramér–Rao bound is the
+    covariance.
+    """
+    assembly, optimum = search(problem, begin=begin)
+    if optimum.status != CONVERGED:
+        assembly, optimum = search(problem)
+    effect = influence(assembly, optimum.sensitivities, optimum.noise)
+    if optimum.status != CONVERGED or effect is None:
+        raise ArithmeticError("a simulated manoeuvre could not be estimated")
+    covariance = cramer_rao(assembly, effect.rows, optimum.noise)
     return Estimate(
-        theta=batch.theta[i],
+        theta=reported_parameters(optimum.shared, optimum.local),
         covariance_cr=covariance,
         covariance=covariance,
-        cost=float(batch.cost[i]),
-        fits=(fits,),
-        iterations=int(batch.iterations[i]),
+        cost=float(np.prod(optimum.noise[:2] ** 2)),
+        fits=channel_fits(assembly, optimum),
+        iterations=optimum.iterations,
         not_identifiable={},
         correlated=(),
-        condition=float("nan"),
+        condition=effect.condition,
         airspeed_m_s=None,
     )
 

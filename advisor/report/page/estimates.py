@@ -16,7 +16,7 @@ from advisor.report.facts.estimates import (
 from advisor.report.page.blocks import Block, Figure, Gallery, Paragraph, listing, section
 from advisor.report.page.content import Content
 from advisor.report.page.drawing import BLACK, BLUE, ORANGE, picture
-from advisor.report.result_rows import regression_table, structure_table
+from advisor.report.result_rows import structure_table
 from advisor.report.table import Table
 from advisor.words.quantities import PARAMETERS as QUANTITIES
 
@@ -47,7 +47,6 @@ def estimates(content: Content) -> Iterator[Block]:
             ("nuisance parameter", "estimate ± 95 %", "aircraft file", "unit"),
             tuple((fact.name, fact.cell, stated, fact.unit) for fact, stated in nuisances), frozenset({1, 2}),
         )  # fmt: skip
-    yield from regression_table(model, "equation-error")
     alone = {
         str(judged.maneuver.number): {name: of_one(name, judged, prior) for name in PARAMETERS}
         for judged in content.state.maneuvers

@@ -13,7 +13,7 @@ from advisor.report.page.content import Content
 from advisor.report.page.fits import fit_blocks
 from advisor.report.page.maneuvers import ANCHORS, HEAD, maneuver_row
 from advisor.report.qualities import MODE_NAMES, levels_of, mode_facts, tests_of
-from advisor.report.result_rows import joint_table, regression_table, structure_table
+from advisor.report.result_rows import joint_table, structure_table
 from advisor.report.table import Table
 from advisor.words.vehicle_time import CLOCK
 
@@ -39,7 +39,6 @@ def lateral(content: Content) -> Iterator[Block]:
     yield joint
     yield from structure_table(state.model, "lateral-structure")
     yield from listing([*structure_lines(state.model), *untold(state.model)])
-    yield from regression_table(state.model, "lateral-equation-error")
     yield from _modes(content, state)
     yield from fit_blocks(state.maneuvers, LATERAL.inputs, "lateral model", "lateral-fit")
 
