@@ -127,15 +127,12 @@ EACH_OF ?= 20
 score-gap: .venv/.developed ## blind flights of every generator, diagnosed and scored (SEED=..., EACH_OF=20)
 	$(BIN)/python -m benchmarks.gap_score --each $(EACH_OF) --seed $(SEED)
 
-.PHONY: fed-back metamorphic learn-nature
+.PHONY: fed-back metamorphic
 fed-back: .venv/.developed ## improved files, fed back: none or numbers after 95 % of them (SEED=..., EACH_OF=20)
 	$(BIN)/python -m benchmarks.fed_back --each $(EACH_OF) --seed $(SEED)
 
 metamorphic: .venv/.developed ## natural changes of every recorded flight: the answers must stay (hours)
 	$(BIN)/python -m benchmarks.metamorphic
-
-learn-nature: .venv/.developed ## natural widths, scored on the generator left out (SEED=..., EACH_OF=20)
-	$(BIN)/python -m benchmarks.learn_nature --each $(EACH_OF) --seed $(SEED)
 
 FLIGHTS ?= ../shared/flights
 real: .venv/.developed ## records of real aircraft against what is known of them (FLIGHTS=folder)

@@ -110,9 +110,7 @@ def command(
     aircraft = asked.read_aircraft()
     refuse_proving(proving)
     if not asked.logs:
-        raise ConfigurationError(
-            "advisor gap needs at least one log; advisor foresee plans a flight without one."
-        )
+        raise ConfigurationError("advisor gap needs at least one log.")
     if specification is not None:
         aircraft = replace(aircraft, simulator=specification)
     if out is not None:

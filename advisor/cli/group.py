@@ -29,7 +29,6 @@ COMMANDS = {
     "serve": "Show the screens of live and replay in a browser, for several viewers.",
     "analyze": "Print every manoeuvre's verdict, the estimates, and stop or continue.",
     "gap": "Diagnose why the real aircraft does not fly like the simulator.",
-    "foresee": "Print which effects a planned flight would detect, and at what size.",
     "simulator": "Check your own simulator: signs, units, trim and responses.",
     "export": "Write channels, manoeuvres, estimates and residuals for other tools.",
     "batch": "Analyze many logs: one table of flights, one of manoeuvres, changes over time.",
@@ -79,8 +78,6 @@ class LazyCommands(click.Group):
         UsageError
             There is no such command.
         """
-        if args[0] == "gap" and "--foresee" in args:  # an older name of the command
-            args = ["foresee", *(word for word in args[1:] if word != "--foresee")]
         near = get_close_matches(args[0], COMMANDS, 1)
         if args[0] not in COMMANDS and near and not ctx.resilient_parsing:
             ctx.fail(f"No such command {args[0]!r}: did you mean {near[0]}?")

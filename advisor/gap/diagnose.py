@@ -25,7 +25,6 @@ from advisor.gap.result import Cause, Diagnosis, spelled
 from advisor.gap.search.baseline import at_another_speed, fit_baseline, of_this_flight
 from advisor.gap.uncatalogued.airspeed_scale import airspeed_scale_of, true_over_read
 from advisor.gap.uncatalogued.weight_check import weight_reading
-from advisor.gap.uncatalogued.wind_shear import wind_shear
 from advisor.gap.verdict.answer import answer_of
 from advisor.gap.verdict.notes import left_out
 from advisor.gap.verdict.one_maneuver import answer_of_one
@@ -128,7 +127,7 @@ def examine(
     inference = infer(problem, baseline, aircraft, kinematics, prior, progress, mirror)
     progress("measuring the gap", 0.97)
     aside = left_aside(given, aircraft.effects, () if inference.sought_air.found is None else AIR)
-    circumstances = Circumstances(wind_shear(flown, over_read), weight, aside, speed is None)
+    circumstances = Circumstances(weight, aside, speed is None)
     answer = partial(answer_of, inference, aircraft, kinematics, holdout, circumstances)
     whole = noted(*answer())
     return replace(whole, fewer=lambda most: noted(*answer(most)), seen_in=lambda x: noted(*answer(seen=x)))

@@ -30,7 +30,7 @@ _FOLDERS = {
     "uncatalogued": "laws and checks outside the catalogue",
     "inference": "the evidence and the posterior of every explanation",
     "verdict": "the answer",
-    "foresight": "what a planned flight could show",
+    "foresight": "what a flight could not show",
     "simulator": "the simulator under diagnosis",
 }
 

@@ -18,7 +18,7 @@ With unusable input the document still comes, with `"usable": false`, and the ex
 The schema files below hold for every document of their kind; a test checks them against real output. Later
 versions may add keys. In the tables `[]` stands for each element of a list and `*` for each key of a mapping.
 """
-_ORDER = ("analyze", "gap", "doctor", "aircraft", "study", "foresee")
+_ORDER = ("analyze", "gap", "doctor", "aircraft", "study")
 
 
 def page(folder: Path) -> str:

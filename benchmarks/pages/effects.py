@@ -9,7 +9,7 @@ from advisor.gap.kit.effect import BLOCKS, Effect, Said, without_sizes
 from advisor.gap.kit.variant import Variant
 from advisor.gap.verdict.causes import parameters_of
 from advisor.report.facts.sizes import in_units, short
-from benchmarks.pages.planned import PLANS, Plan, described
+from benchmarks.pages.planned import PLANS, described
 
 _HEAD = """# The effects that a diagnosis can name
 
@@ -20,13 +20,10 @@ This page is made from `advisor/gap/effects`.
 - *Said*: the sentence of a verdict. Letters in italics stand for sizes.
 - *Parameters*: names and units as in `effects:` of the aircraft file, and the range of the search. A dash
   marks a number that is not searched for.
-- *Foreseen from*: the least size of the first parameter in a plan. Without an entry the change of the motion
-  alone decides.
 - *Needs*: channels, or a change in the flight, without which the effect cannot be seen.
 - *Apart from*: an effect that looks alike, and how to distinguish the two.
 
-"By the flight" marks a bound that depends on the length, the heights or the air speed of the flight. Where an
-autopilot has filtered the channels, times of sensors are foreseen at `FILTERED_S` or more.
+"By the flight" marks a bound that depends on the length, the heights or the air speed of the flight.
 """
 _TITLES = {
     "input": "between command and surface",
@@ -68,7 +65,6 @@ def page() -> str:
 
 def _section(effect: Effect) -> str:
     lines = [f"### `{effect.name}`\n", *(f"- {said}" for said in _said(effect)), *_parameters(effect)]
-    lines += [f"- *Foreseen from*: {size}." for size in _foreseen_from(effect.name)]
     lines += [f"- *Needs*: {need}." for need in _needs(effect)]
     lines += [f"- *Apart from* {other}: {way}." for other, way in _apart(effect)]
     lines += [f"- {sentence}" for flag, sentence in _KINDS.items() if getattr(effect, flag)]
@@ -136,31 +132,6 @@ def _bounds(variant: Variant) -> Mapping[str, tuple[float, float]]:
         if name not in variant.fixed
         for low, high in [(ends[0][name].value, ends[1][name].value)]
     }
-
-
-def _foreseen_from(effect: str) -> Iterator[str]:
-    here, elsewhere = (_least(effect, plan) for plan in PLANS)
-    for parameter, sizes in here.items():
-        shown = " or ".join(sizes)
-        changes = sizes != elsewhere[parameter]
-        yield f"`{parameter}` {shown}{f' in {PLANS[0].what}, {_BY_FLIGHT}' if changes else ''}"
-
-
-def _least(effect: str, plan: Plan) -> Mapping[str, list[str]]:
-    """Of each size of an effect the least that is foreseen, in words."""
-    found: dict[str, list[str]] = {}
-    for v in described(effect, plan):
-        if v.smallest > 0.0:
-            factor, unit = in_units(v.names[0])
-            size = factor * (1.0 / v.smallest if v.inverted else v.smallest)
-            text = f"{_rounded(size)} {unit}".rstrip() + (" and slower" if v.inverted else "")
-            known = found.setdefault(v.names[0], [])
-            known += [text] if text not in known else []
-    return found
-
-
-def _rounded(size: float) -> str:
-    return short(float(f"{size:.2g}"))
 
 
 def _needs(effect: Effect) -> Iterator[str]:

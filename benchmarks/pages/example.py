@@ -99,7 +99,6 @@ EXAMPLES: Sequence[Example] = (
         "gap logs/arduplane-calm.tlog --aircraft arduplane-calm-with-actuator-lag.yaml",
         {"gap-again": [Part(until="--all adds")]},
     ),
-    Example("foresee --aircraft uav.yaml", {"foresee": [Part()]}),
 )
 """In the order in which they run: a later one reads what an earlier one wrote."""
 

@@ -2,17 +2,14 @@
 
 import json
 
-import numpy as np
 import pytest
 import yaml
 
 from advisor.aircraft.aircraft import Aircraft, CampaignPlan, Limits
 from advisor.aircraft.reference import PARAMETERS, FmuTrim, FmuVariables
 from advisor.aircraft_file.read import parse_aircraft
-from advisor.gap.foresight.plan import foresee_plan
 from advisor.report.gap_document import gap_document
 from advisor.report.improved import improved_file, text_of
-from advisor.words.problems import ConfigurationError
 from tests.gap.diagnosed import diagnose
 from tests.gap.generator import Setup, fly
 from tests.schemas import breaches
@@ -76,37 +73,3 @@ def test_the_improved_simulator_is_a_file_with_the_effect_in_it(delayed, tmp_pat
     assert written["effects"]["transport_delay"]["delay_s"] == pytest.approx(0.06, abs=0.003)
     assert set(written["model"]) == set(PARAMETERS)
     assert improved_file(delayed, Aircraft())["name"].endswith("improved")
-
-
-def test_foreseeing_says_that_without_an_accelerometer_a_lag_must_be_larger_to_be_seen():
-    plane = Aircraft(model=MODEL, reference_airspeed_m_s=22.0)
-    plan = ("3211", "rev", "rev", "3211")
-    smallest = [
-        {f.effect: f.smallest for f in foresee_plan(plane, plan, 50.0, 2.0, without)}["alpha_lag"]
-        for without in ((), ("a_z",))
-    ]
-    assert smallest[1] > 1.5 * smallest[0]
-
-
-def test_foreseeing_knows_the_exact_twin_of_a_vane_off_the_centre_of_gravity():
-    plane = Aircraft(model=MODEL, reference_airspeed_m_s=22.0)
-    found = {f.effect: f for f in foresee_plan(plane, ("3211", "rev"), 50.0, 2.0)}
-    twin, cosine = found["alpha_vane_offset"].confused_with[0]
-    assert twin == "accelerometer_offset"
-    assert cosine > 0.999
-    assert found["alpha_vane_offset"].add
-
-
-def test_foreseeing_needs_a_model():
-    with pytest.raises(ConfigurationError, match="Z_0"):
-        foresee_plan(Aircraft(), ("3211",), 50.0, 2.0)
-
-
-def test_half_the_step_makes_the_smallest_detectable_size_twice_as_large():
-    plane = Aircraft(model=MODEL, reference_airspeed_m_s=22.0)
-    sizes = [
-        {f.effect: f.smallest for f in foresee_plan(plane, ("3211", "rev"), 50.0, deg)}["pitch_rate_scale"]
-        for deg in (1.0, 2.0)
-    ]
-    assert sizes[0] / sizes[1] == pytest.approx(2.0, rel=0.1)
-    assert np.isfinite(sizes[0])

@@ -4,7 +4,6 @@ import os
 from pathlib import Path
 
 import pytest
-from click.testing import CliRunner
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft.reference import PARAMETERS
@@ -18,7 +17,6 @@ from tests.flights import TWO, recorded
 from tests.gap.diagnosed import diagnose
 from tests.gap.generator import Setup, fly
 from tests.gap.test_report_screen import diagnosis
-from tests.printed import taken
 
 
 def said(capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch, *arguments: object) -> tuple:
@@ -53,33 +51,6 @@ def test_a_folder_without_permission_is_refused_before_the_log_is_read(capsys, m
     code, error = said(capsys, monkeypatch, "missing.tlog", "--out", "better.yaml")
     assert code == 2
     assert "cannot be written to" in error
-
-
-def test_a_log_beside_foresee_is_refused_for_it_would_not_be_read(capsys, monkeypatch):
-    code, error = said(capsys, monkeypatch, "flight.tlog", "--foresee")
-    assert code == 2
-    assert "extra argument (flight.tlog)" in error
-
-
-def test_a_plan_is_foreseen_by_a_command_of_its_own_out_of_the_help_of_the_gap():
-    shown = CliRunner().invoke(cli.advisor, ["gap", "--help"]).output
-    assert not any(option in shown for option in ("--foresee", "--plan", "--amplitude-deg"))
-    own = CliRunner().invoke(cli.advisor, ["foresee", "--help"]).output
-    assert all(option in own for option in ("--plan", "--rate", "--amplitude-deg", "--without", "--json"))
-    line = "advisor foresee --aircraft uav.yaml --rate 20 --without a_z"
-    assert (taken(line)["rate_hz"], taken(line)["without"]) == (20.0, "a_z")
-
-
-@pytest.mark.parametrize(("arguments", "option"), [
-    (["flight.tlog", "--rate", "20"], "No such option '--rate'"),
-    (["--foresee", "--holdout", "2"], "No such option '--holdout'"),
-])  # fmt: skip
-def test_an_option_of_a_plan_is_none_of_a_flight_and_the_other_way_round(
-    capsys, monkeypatch, arguments, option
-):
-    code, error = said(capsys, monkeypatch, *arguments)
-    assert code == 2
-    assert option in error
 
 
 @pytest.mark.parametrize(

@@ -1,9 +1,9 @@
-"""Effects that a planned flight could show, and effects that a past flight could not have shown.
+"""Effects that a flight could not have shown.
 
 An effect is detectable if its signature has enough likelihood and enough change of the outputs.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -17,88 +17,23 @@ from advisor.gap.foresight.signatures import Signatures
 from advisor.gap.inference.explanation import least_apart
 from advisor.gap.kit.variant import Variant
 from advisor.gap.result import VISIBLE, Unseen, spelled
-from advisor.gap.simulator.layout import INDEX
 from advisor.process.arrays import FloatArray
 from advisor.words.quantiles import NORMAL_95
 
 CONFUSED_AT = 0.95
 """Cosine between two signatures above which one effect is confused with the other."""
-_LISTED_AT = 0.8
 _MOST_CONFUSIONS = 3
-"""Words: least cosine of a listed similar effect, and the largest number of listed effects."""
-_GROWTH, _CLOSE = 3.0, 0.02
-"""Numerical: factor on a size without a signature, and relative difference of two sizes in a row at which the
-refinement ends."""
+"""Words: largest number of effects that are listed as similar to one effect."""
 
 
 @dataclass(frozen=True, slots=True)
-class Foreseen:
-    """Detectability of one effect in a planned flight."""
+class _Signature:
+    """Change of the outputs by one effect of unit size, in a flight."""
 
     effect: str
-    parameter: str
-    smallest: float
-    """Smallest detectable size of the effect, in the parameter's unit; infinite for an undetectable
-    effect."""
-    confused_with: tuple[tuple[str, float], ...]
-    """Effects with a similar signature, each with the cosine between the signatures."""
-    add: str = ""
-    """Channel or manoeuvre that would distinguish the effect, or make it visible."""
-    is_limit: bool = False
-    """Whether the effect is a limit, which is detectable if smaller than ``smallest``."""
-    share: float | None = None
-    """Smallest size of a nonlinear term as a share of the linear term, at the plan's amplitude."""
-
-
-@dataclass(frozen=True)
-class Signature:
-    """Change of the outputs by one effect of unit size."""
-
-    effect: str
-    parameter: str
     vector: FloatArray
-    least: float
-    """Least size at which the effect is named."""
-    most: float = float("inf")
-    """Largest size of the effect that is sought."""
-    numbers: int = 1
-    """Number of the effect's parameters, each at the price of ½ ln N."""
-    inverted: bool = False
-
-
-def foresee(
-    problem: EffectProblem,
-    fitted: EffectFit,
-    variants: Sequence[Variant],
-    noise: FloatArray,
-    others: Sequence[Signature] = (),
-    rounds: int = 4,
-) -> list[Foreseen]:
-    """Return the smallest detectable size of every effect, and the effects with similar signatures.
-
-    Parameters
-    ----------
-    noise
-        Shape (channels,): noise of each channel, unless a filter knows the noise.
-    others
-        Signatures of effects that are no variants of the model.
-    rounds
-        Number of refinements of a size where the response is not proportional to it.
-    """
-    signatures = Signatures(problem, fitted, fitted.noise if problem.knows_the_noise else noise)
-    present = {e.effect for e in fitted.point.effects}
-    excluded = present | {signature.effect for signature in others}
-    wanted = [v for v in _one_each(variants) if v.effect not in excluded]
-    # Signed sizes at which the responses of the effects are first evaluated.
-    sizes = [float(np.copysign(abs(v.starts[0][0]) or v.steps[0], _reach(v))) for v in wanted]
-    seen = _responses(problem, fitted, list(zip(wanted, sizes, strict=True)))
-    listed = [
-        _signature_of(problem, fitted, signatures, variant, size, signatures.of(response), rounds)
-        for variant, size, response in zip(wanted, sizes, seen, strict=True)
-    ]
-    listed += others
-    shares = _shares(problem, fitted)
-    return [_foreseen(signature, listed, signatures, shares) for signature in listed]
+    is_visible: bool
+    """Whether the flight would show the effect at its largest size."""
 
 
 def unseen_effects(
@@ -118,18 +53,50 @@ def unseen_effects(
         if effect.need is not None and name not in tried
     }
     out = [Unseen(effect, need.because, need.add) for effect, need in needed.items()]
-    for seen in foresee(problem, fitted, variants, noise, rounds=1):
-        twins = [name for name, cosine in seen.confused_with if cosine > CONFUSED_AT]
-        if not np.isfinite(seen.smallest):
-            out.append(Unseen(seen.effect, *hidden_from(seen.effect, flights)))
-        elif twins and seen.effect not in present:
+    signatures = _signatures(problem, fitted, variants, noise)
+    for one in signatures:
+        twins = _twins(one, signatures)
+        if not one.is_visible:
+            out.append(Unseen(one.effect, *hidden_from(one.effect, flights)))
+        elif twins and one.effect not in present:
             alike = " or ".join(map(spelled, twins))
-            out.append(Unseen(seen.effect, f"when small it looks like {alike}", seen.add))
+            ways = [way for twin in twins if (way := way_to_distinguish(one.effect, twin))]
+            would_need = "; ".join(dict.fromkeys(ways)) or OTHERWISE
+            out.append(Unseen(one.effect, f"when small it looks like {alike}", would_need))
     if flights.alpha_is_derived:
         out = [unseen for unseen in out if not EFFECTS[unseen.effect].of_one_imu]
         hidden = [name for name, effect in EFFECTS.items() if effect.of_one_imu and name not in present]
         out += [Unseen(effect, *ONE_IMU) for effect in hidden]
     return tuple(out)
+
+
+def _signatures(
+    problem: EffectProblem, fitted: EffectFit, variants: Sequence[Variant], noise: FloatArray
+) -> list[_Signature]:
+    """Return the signature of every effect that the fitted model lacks.
+
+    ``noise``, shape (channels,), is the noise of each channel unless a filter knows the noise.
+    """
+    signatures = Signatures(problem, fitted, fitted.noise if problem.knows_the_noise else noise)
+    in_model = {e.effect for e in fitted.point.effects}
+    wanted = [v for v in _one_each(variants) if v.effect not in in_model]
+    # Signed sizes at which the responses of the effects are evaluated.
+    sizes = [float(np.copysign(abs(v.starts[0][0]) or v.steps[0], _reach(v))) for v in wanted]
+    responses = _responses(problem, fitted, list(zip(wanted, sizes, strict=True)))
+    listed = []
+    for variant, response in zip(wanted, responses, strict=True):
+        vector = signatures.of(response)
+        smallest = signatures.smallest(vector, _needed(signatures, len(variant.names)))
+        is_visible = bool(np.isfinite(smallest)) and smallest <= abs(_reach(variant))
+        listed.append(_Signature(variant.effect, vector, is_visible))
+    return listed
+
+
+def _twins(one: _Signature, signatures: Sequence[_Signature]) -> list[str]:
+    """Return the effects with which an effect is confused, the most similar first."""
+    cosines = [(_cosine(one.vector, x.vector), x.effect) for x in signatures if x is not one]
+    alike = sorted((pair for pair in cosines if pair[0] > CONFUSED_AT), key=lambda pair: -pair[0])
+    return [effect for _, effect in alike[:_MOST_CONFUSIONS]]
 
 
 def _one_each(variants: Sequence[Variant]) -> list[Variant]:
@@ -148,31 +115,6 @@ def _reach(variant: Variant) -> float:
     """Return the largest signed size for which an effect is sought."""
     low, high = variant.bounds[0]
     return high if high >= -low or variant.starts[0][0] > 0.0 else low
-
-
-def _signature_of(
-    problem: EffectProblem,
-    fitted: EffectFit,
-    signatures: Signatures,
-    variant: Variant,
-    size: float,
-    vector: FloatArray,
-    rounds: int,
-) -> Signature:
-    """Return the model's response to an effect, per unit of its first parameter."""
-    # An effect whose search starts at zero is linear there; others are evaluated at their smallest size.
-    reach = _reach(variant)
-    numbers = len(variant.names)
-    needed = _needed(signatures, numbers)
-    for _ in range(rounds - 1 if variant.starts[0][0] else 0):
-        just = max(signatures.smallest(vector, needed), variant.smallest)
-        wanted = min(just if np.isfinite(just) else _GROWTH * abs(size), abs(reach))
-        if abs(wanted - abs(size)) < _CLOSE * abs(size):
-            break
-        size = float(np.copysign(wanted, reach))
-        vector = signatures.of(_responses(problem, fitted, [(variant, size)])[0])
-    least, most = variant.smallest, abs(reach)
-    return Signature(variant.effect, variant.names[0], vector, least, most, numbers, variant.inverted)
 
 
 def _responses(
@@ -201,58 +143,6 @@ def _needed(signatures: Signatures, numbers: int) -> float:
     # A filter of moving air leaves far less of a change than the outputs show.
     change = 0.0 if signatures.filtered else _least_change(signatures.problem) * signatures.rows
     return max(float(np.sqrt(2.0 * LEAST_GAIN) + NORMAL_95) ** 2, 2.0 * LEAST_GAIN + price, change)
-
-
-def _foreseen(
-    signature: Signature,
-    all_signatures: Sequence[Signature],
-    signatures: Signatures,
-    shares: Mapping[str, float],
-) -> Foreseen:
-    smallest = max(
-        signatures.smallest(signature.vector, _needed(signatures, signature.numbers)), signature.least
-    )
-    if smallest > signature.most:
-        smallest = float("inf")
-    confused = sorted(
-        (
-            (other.effect, _cosine(signature.vector, other.vector))
-            for other in all_signatures
-            if other is not signature
-        ),
-        key=lambda pair: -pair[1],
-    )
-    confused = [pair for pair in confused if pair[1] > _LISTED_AT][:_MOST_CONFUSIONS]
-    twins = [other for other, cosine in confused if cosine > CONFUSED_AT]
-    ways = [way for way in (way_to_distinguish(signature.effect, other) for other in twins) if way]
-    add = "; ".join(dict.fromkeys(ways)) or (OTHERWISE if twins else "")
-    if not np.isfinite(smallest):
-        add = "; ".join(dict.fromkeys([hidden_from(signature.effect, signatures.problem.flights)[1], *ways]))
-    share = None
-    if signature.parameter in shares and np.isfinite(smallest):
-        share = smallest * shares[signature.parameter]
-    size = 1.0 / smallest if signature.inverted and np.isfinite(smallest) else smallest
-    return Foreseen(
-        signature.effect, signature.parameter, size, tuple(confused), add, signature.inverted, share
-    )
-
-
-def _shares(problem: EffectProblem, fitted: EffectFit) -> Mapping[str, float]:
-    """Return each nonlinear term as a share of its linear term, per size, at the plan's largest motion."""
-    p = problem.driving(fitted.point)
-    flights = problem.flights.flights
-    reached = {
-        "delta_e": max(float(np.max(np.abs(f.u - f.u_trim))) for f in flights),
-        "alpha": max(
-            float(np.max(np.abs(problem.fly(f, p[i])[0] - f.alpha_trim))) for i, f in enumerate(flights)
-        ),
-    }
-    shares: dict[str, float] = {}
-    for curve in [effect.curve for effect in EFFECTS.values() if effect.curve is not None]:
-        for square in [term for term, power in curve.powers.items() if power == 2]:
-            linear = abs(float(p[0, INDEX[curve.slope]]))
-            shares |= {square: reached[curve.variable] / linear} if linear > 0.0 else {}
-    return shares
 
 
 def _cosine(a: FloatArray, b: FloatArray) -> float:

@@ -9,7 +9,6 @@ from advisor.gap.records.flights import PreparedManeuvers
 from advisor.gap.search.air import MovingAir
 from advisor.gap.uncatalogued.airspeed_scale import AirspeedScale
 from advisor.gap.uncatalogued.weight_check import WeightReading
-from advisor.gap.uncatalogued.wind_shear import Shear
 from advisor.process.arrays import FloatArray
 
 
@@ -51,8 +50,6 @@ class Unexplained:
 class Circumstances:
     """Readings of the flight and entries of the aircraft file that belong to every model."""
 
-    shear: Shear | None = None
-    """Wind that changes with height; None without significant shear."""
     weight: WeightReading | None = None
     """Weight that the accelerometer reads; None with too few manoeuvres for a reading."""
     left_aside: tuple[str, ...] = ()

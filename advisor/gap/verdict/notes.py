@@ -13,7 +13,6 @@ from advisor.gap.records.usable import why_left_out
 from advisor.gap.result import GapVerdict, spelled
 from advisor.gap.simulator.layout import SPEED
 from advisor.gap.verdict.text import place
-from advisor.words.quantiles import NORMAL_95
 
 _ANOTHER_SPEED = 0.005
 """Words: least relative difference between two mean air speeds that is reported."""
@@ -68,13 +67,6 @@ def _of_the_speed(e: Findings, aircraft: Aircraft) -> Iterator[str]:
             f"The aircraft file's derivatives are right at {reference:.1f} m/s. The mean of the manoeuvres "
             f"is {flown:.1f} m/s: state reference_airspeed_m_s."
         )
-    shear = e.circumstances.shear
-    if shear is not None:
-        per_metre = f"{abs(shear.gradient_per_s):.2f} ± {NORMAL_95 * shear.std:.2f} m/s"
-        if shear.is_implausible:
-            yield f"The air speed's error grows by {per_metre} per metre climbed, which no wind explains."
-        else:
-            yield f"The wind changed with height, by {per_metre} per metre."
     if e.airspeed_scale is not None:
         yield e.airspeed_scale.sentence
     if e.circumstances.weight is not None and e.circumstances.weight.is_off:

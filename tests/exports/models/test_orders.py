@@ -99,14 +99,6 @@ def test_the_simulators_own_aircraft_is_not_overwritten(tmp_path, monkeypatch):
     assert (tmp_path / "plane.xml").read_text() == "<fdm_config/>"
 
 
-def test_without_a_flight_there_is_nothing_to_export(tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    result = CliRunner().invoke(
-        cli.advisor, ["gap", "--foresee", "--export", "matlab:x.m"], standalone_mode=False
-    )
-    assert "No such option '--export'" in str(result.exception)
-
-
 def test_the_document_lists_the_files_written_and_what_they_do_not_carry(tmp_path, monkeypatch):
     orders = ["--export", "matlab:x.m", "--export", "sdf:x.sdf", "--export", "ardupilot:x.parm"]
     result = gap(tmp_path, monkeypatch, "--json", *orders, answer=found())

@@ -1,1 +1,0 @@
-"""Natural widths of the diagnosis, learnt from kept evidence and scored on the generator left out."""
