@@ -1,13 +1,13 @@
 """What commands print with --json is what the schema files say, and the schema files keep the contract."""
 
 import json
-from pathlib import Path
 
 import pytest
 from jsonschema import Draft202012Validator
 
 from tests.conftest import Advisor
 from tests.flights import SHIPPED
+from tests.rows import row
 from tests.schemas import SCHEMAS, breaches, schema
 
 KEPT = {
@@ -62,26 +62,19 @@ def test_a_schema_has_every_key_of_the_contract(name: str, section: str) -> None
     assert set(KEPT[name][section].split()) - _keys(name, section) == set()
 
 
-def test_the_analysis_of_a_log_that_cannot_serve_is_what_its_schema_says(advisor: Advisor) -> None:
-    printed = advisor("analyze", SHIPPED / "arduplane-default-rates.tlog", "--json").stdout
-    assert breaches("analyze", json.loads(printed)) == []
+POOR = SHIPPED / "arduplane-default-rates.tlog"
 
 
-def test_the_doctors_document_is_what_its_schema_says(advisor: Advisor) -> None:
-    printed = advisor("doctor", SHIPPED / "arduplane-default-rates.tlog", "--json").stdout
-    assert breaches("doctor", json.loads(printed)) == []
-
-
-def test_the_document_of_a_script_is_what_its_schema_says(advisor: Advisor, tmp_path: Path) -> None:
-    printed = advisor("script", "ardupilot", "-o", tmp_path / "x.lua", "--json").stdout
-    assert breaches("script", json.loads(printed)) == []
-
-
-def test_the_document_without_a_script_is_what_its_schema_says(advisor: Advisor, tmp_path: Path) -> None:
-    printed = advisor(
-        "script", "ardupilot", tmp_path / "none.tlog", "-o", tmp_path / "x.lua", "--json"
-    ).stdout
-    assert breaches("script", json.loads(printed)) == []
+@row("the analysis of a log that cannot serve is what its schema says", ["analyze", POOR])
+@row("the doctor's document is what its schema says", ["doctor", POOR])
+@row("the document of a script is what its schema says", ["script", "ardupilot", "-o", "x.lua"])
+@row(
+    "the document without a script is what its schema says",
+    ["script", "ardupilot", "none.tlog", "-o", "x.lua"],
+)
+def test_a_printed_document(arguments, advisor: Advisor, tmp_path, monkeypatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert breaches(arguments[0], json.loads(advisor(*arguments, "--json").stdout)) == []
 
 
 def test_a_key_that_no_schema_knows_is_found() -> None:

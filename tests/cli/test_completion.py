@@ -3,6 +3,7 @@
 import pytest
 
 from tests.conftest import Advisor
+from tests.rows import row
 
 
 @pytest.fixture
@@ -21,22 +22,20 @@ def completed(advisor: Advisor, monkeypatch: pytest.MonkeyPatch):
     return offer
 
 
-def test_a_command_is_completed(completed) -> None:
-    assert completed("advisor an") == ["plain,analyze"]
+@row("a command is completed", "advisor an", ["plain,analyze"])
+@row("an option is completed", "advisor analyze a.tlog --ru", ["plain,--rule"])
+@row("a command within a command is completed", "advisor aircraft ch", ["plain,check"])
+def test_a_word_is_completed(line: str, offered: list[str], completed) -> None:
+    assert completed(line) == offered
 
 
-def test_an_option_and_its_values_are_completed(completed) -> None:
-    assert completed("advisor analyze a.tlog --ru") == ["plain,--rule"]
+def test_the_values_of_an_option_are_completed(completed) -> None:
     assert "plain,information" in completed("advisor analyze a.tlog --rule ")
 
 
 @pytest.mark.parametrize("line", ["advisor analyze fl", "advisor doctor fl", "advisor gap --aircraft fl"])
 def test_a_file_is_left_to_the_shell(completed, line: str) -> None:
     assert completed(line) == ["file,fl"] or completed(line) == ["file,"]
-
-
-def test_a_command_within_a_command_is_completed(completed) -> None:
-    assert completed("advisor aircraft ch") == ["plain,check"]
 
 
 @pytest.mark.parametrize("shell", ["bash", "zsh", "fish"])

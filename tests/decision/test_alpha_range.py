@@ -2,12 +2,11 @@
 
 from dataclasses import replace
 
-import pytest
-
 from advisor.aircraft.aircraft import CampaignPlan
 from advisor.decision.history import CandidateManeuver
 from advisor.decision.judge import judge_campaign
 from tests.decision.campaigns import at_alpha, estimate, with_change
+from tests.rows import row
 
 PLAN = CampaignPlan()
 STALLED = estimate(with_change("M_q", 0.65))
@@ -22,15 +21,6 @@ def normal(n, low_deg=2.0, high_deg=6.0):
     return [at_alpha(estimate(), low_deg + 0.1 * k, high_deg + 0.1 * k) for k in range(n)]
 
 
-@pytest.mark.parametrize("others", [2, 3, 6])
-def test_another_aircraft_beyond_the_others_angle_of_attack_is_left_out(others):
-    assert codes(*normal(others), at_alpha(STALLED, 8.0, 12.0)) == ["alpha_range"]
-
-
-def test_the_order_flown_does_not_matter():
-    assert codes(at_alpha(STALLED, 8.0, 12.0), *normal(2)) == ["alpha_range"]
-
-
 def test_the_sentence_names_both_angles_of_attack_and_the_next_step():
     history = [CandidateManeuver(one) for one in (*normal(2, 2.0, 6.0), at_alpha(STALLED, 8.0, 12.0))]
     sentence = judge_campaign(history, PLAN)[-1].sentence
@@ -38,33 +28,21 @@ def test_the_sentence_names_both_angles_of_attack_and_the_next_step():
     assert sentence.endswith("fly it at their angle of attack")
 
 
-def test_two_stalls_do_not_hide_each_other():
-    assert (
-        codes(*normal(3), at_alpha(STALLED, 8.0, 12.0), at_alpha(STALLED, 5.0, 15.0)) == ["alpha_range"] * 2
-    )
+BEYOND = at_alpha(STALLED, 8.0, 12.0)
+SCATTERED = [at_alpha(estimate(with_change("M_q", by)), 2.0, 6.0) for by in (0.7, 1.0, 1.3)]
+BLIND = [replace(one, fits=({"q": one.fits[0]["q"]},)) for one in (estimate(), estimate(), STALLED)]
 
 
-def test_an_aircraft_that_is_linear_beyond_the_others_counts():
-    assert codes(*normal(3), at_alpha(estimate(), 8.0, 12.0)) == []
-
-
-def test_a_contradiction_within_the_others_angle_of_attack_has_another_reason():
-    assert codes(*normal(4), at_alpha(STALLED, 3.0, 7.0)) == ["odd"]
-
-
-def test_a_larger_test_about_the_others_angle_of_attack_is_not_beyond_it():
-    assert codes(*normal(2), at_alpha(STALLED, -2.0, 11.0)) == []
-
-
-def test_of_two_manoeuvres_nobody_knows_which_is_beyond():
-    assert codes(*normal(1), at_alpha(STALLED, 8.0, 12.0)) == []
-
-
-def test_others_that_scatter_as_much_leave_nothing_out():
-    scattered = [at_alpha(estimate(with_change("M_q", by)), 2.0, 6.0) for by in (0.7, 1.0, 1.3)]
-    assert codes(*scattered, at_alpha(STALLED, 8.0, 12.0)) == []
-
-
-def test_without_a_measured_angle_of_attack_nothing_is_beyond():
-    blind = [replace(one, fits=({"q": one.fits[0]["q"]},)) for one in (estimate(), estimate(), STALLED)]
-    assert codes(*blind) == []
+@row("another aircraft beyond two others is left out", [*normal(2), BEYOND], ["alpha_range"])
+@row("another aircraft beyond three others is left out", [*normal(3), BEYOND], ["alpha_range"])
+@row("another aircraft beyond six others is left out", [*normal(6), BEYOND], ["alpha_range"])
+@row("the order flown does not matter", [BEYOND, *normal(2)], ["alpha_range"])
+@row("two stalls hide neither", [*normal(3), BEYOND, at_alpha(STALLED, 5.0, 15.0)], ["alpha_range"] * 2)
+@row("a linear aircraft beyond the others counts", [*normal(3), at_alpha(estimate(), 8.0, 12.0)], [])
+@row("a contradiction within their range is odd", [*normal(4), at_alpha(STALLED, 3.0, 7.0)], ["odd"])
+@row("a larger test about the same angle counts", [*normal(2), at_alpha(STALLED, -2.0, 11.0)], [])
+@row("of two manoeuvres nobody knows which is beyond", [*normal(1), BEYOND], [])
+@row("others that scatter as much leave nothing out", [*SCATTERED, BEYOND], [])
+@row("without a measured angle of attack nothing is beyond", BLIND, [])
+def test_a_manoeuvre_beyond_the_others_angle_of_attack(history, reasons):
+    assert codes(*history) == reasons

@@ -11,6 +11,7 @@ from advisor.decision.consistency import outliers
 from advisor.decision.pooling import posteriors_at_one_speed
 from tests.campaign.side_builders import estimate as side_estimate
 from tests.decision.campaigns import THETA, drawn, estimate, with_change
+from tests.rows import row
 
 PLAN = CampaignPlan()
 
@@ -21,23 +22,17 @@ def odd(*thetas, plan=PLAN, std_percent=0.1):
     )
 
 
-def test_a_difference_far_beyond_the_stated_errors_but_within_the_tolerance_is_no_outlier():
-    assert odd(THETA, THETA, THETA, with_change("M_alpha", 1.08)) == []
+WIDE = replace(PLAN, tolerance={"M_alpha": 0.2 * 4.93})
+STRICT = replace(PLAN, tolerance_percent=2.0)
 
 
-def test_a_difference_in_size_is_an_outlier():
-    assert odd(THETA, THETA, THETA, with_change("M_alpha", 1.15)) == [3]
-
-
-def test_the_tolerance_in_the_file_decides_what_is_a_difference_in_size():
-    wide = replace(PLAN, tolerance={"M_alpha": 0.2 * 4.93})
-    assert odd(THETA, THETA, THETA, with_change("M_alpha", 1.15), plan=wide) == []
-    strict = replace(PLAN, tolerance_percent=2.0)
-    assert odd(THETA, THETA, THETA, with_change("M_alpha", 1.08), plan=strict) == [3]
-
-
-def test_a_derivative_that_the_crew_does_not_judge_makes_no_outlier():
-    assert odd(THETA, THETA, THETA, with_change("Z_q", 3.0)) == []
+@row("a difference within the tolerance is no outlier", "M_alpha", 1.08, PLAN, [])
+@row("a difference in size is an outlier", "M_alpha", 1.15, PLAN, [3])
+@row("a difference within a wider tolerance is no outlier", "M_alpha", 1.15, WIDE, [])
+@row("a difference beyond a stricter tolerance is an outlier", "M_alpha", 1.08, STRICT, [3])
+@row("a derivative that the crew does not judge is no outlier", "Z_q", 3.0, PLAN, [])
+def test_a_manoeuvre_that_differs_from_three_others_is_an_outlier(name, factor, plan, found):
+    assert odd(THETA, THETA, THETA, with_change(name, factor), plan=plan) == found
 
 
 @pytest.mark.parametrize("scatter", [6.0, 10.0])

@@ -13,6 +13,7 @@ from advisor.flight.signals.record import Channel
 from advisor.model.axes.lateral import LATERAL
 from advisor.oem.estimate import ChannelFit, NoEstimate
 from tests.campaign.side_builders import estimate
+from tests.rows import row
 
 T = np.arange(0.0, 10.0, 0.02)
 REVERSED = InstrumentFinding(
@@ -61,11 +62,6 @@ def codes(record, found):
     return [reason.code for reason in judge("lateral", record, found, Aircraft())]
 
 
-def test_a_rudder_test_that_determines_its_derivatives_needs_no_longer_free_response():
-    assert codes(flown(), told()) == []
-    assert codes(flown(free_s=0.3), told()) == []
-
-
 @pytest.mark.parametrize("cause", ["end of log", "gap", "mode change"])
 def test_a_record_that_ends_within_its_input_is_no_test_however_much_it_determines(cause):
     assert codes(flown(closed_by=cause, free_s=0.4, level=0.05), told()) == ["aborted"]
@@ -77,32 +73,28 @@ def test_a_short_free_response_counts_only_where_stiffness_damping_and_control_a
     assert codes(flown(free_s=6.0), told(untold=[name])) == []
 
 
-def test_a_short_free_response_counts_only_where_the_predicted_rate_is_known():
-    assert codes(flown(free_s=0.3), told(band=0.3)) == ["free_response", "information"]
+NOTHING = told(untold=LATERAL.names.reported)
 
 
-def test_a_trimming_movement_that_determines_no_derivative_is_no_test():
-    found = told(untold=LATERAL.names.reported)
-    assert codes(flown("other"), found) == ["information"]
-    assert codes(flown("dutch roll release"), found) == []
-
-
-def test_a_rate_that_hardly_exceeds_its_noise_is_too_gentle():
-    assert codes(flown(), told(noise=0.008)) == []
-    assert codes(flown(), told(noise=0.009)) == ["amplitude"]
-
-
-def test_a_yaw_rate_below_one_degree_a_second_is_too_gentle():
-    assert codes(flown(size=0.175), told()) == []
-    assert codes(flown(size=0.173), told()) == ["amplitude"]
-
-
-def test_stamps_that_leap_are_the_one_reason():
-    assert codes(replace(flown(), leapt_s=7200.0), told()) == ["clock"]
-
-
-def test_a_short_record_of_which_the_advisor_missed_a_part_blames_the_advisor():
-    assert codes(replace(flown(free_s=0.3), missed_s=2.0), told(untold=["N_beta"])) == ["advisor_down"]
+@row("a rudder test that determines its derivatives counts", flown(), told(), [])
+@row("with a short free response it counts too", flown(free_s=0.3), told(), [])
+@row(
+    "a short free response with an unsure rate is refused",
+    flown(free_s=0.3), told(band=0.3), ["free_response", "information"],
+)  # fmt: skip
+@row("a trimming movement that determines no derivative is no test", flown("other"), NOTHING, ["information"])
+@row("a dutch roll release that determines none is a test", flown("dutch roll release"), NOTHING, [])
+@row("a rate may exceed its noise by little", flown(), told(noise=0.008), [])
+@row("a rate that hardly exceeds its noise is too gentle", flown(), told(noise=0.009), ["amplitude"])
+@row("a yaw rate above one degree a second is enough", flown(size=0.175), told(), [])
+@row("a yaw rate below one degree a second is too gentle", flown(size=0.173), told(), ["amplitude"])
+@row("stamps that leap are the one reason", replace(flown(), leapt_s=7200.0), told(), ["clock"])
+@row(
+    "a short record of which the advisor missed a part blames the advisor",
+    replace(flown(free_s=0.3), missed_s=2.0), told(untold=["N_beta"]), ["advisor_down"],
+)  # fmt: skip
+def test_a_lateral_record_and_its_estimate_have_these_reasons(record, found, reasons):
+    assert codes(record, found) == reasons
 
 
 def test_a_poor_record_is_told_how_much_more_of_its_control_to_use():

@@ -25,6 +25,7 @@ from advisor.flight.vehicle.vehicle import Vehicle
 from advisor.model.short_period import ShortPeriod
 from advisor.words.problems import Problem
 from tests.doctor.test_pace import ASSUMED
+from tests.rows import row
 
 PLANE = Vehicle(1, 1, "ardupilot", 1)
 SOUND = Clocks(boots=1, drift_percent=0.0, arrival_jitter_ms=2.0, strayed={})
@@ -173,7 +174,7 @@ def test_a_message_that_nobody_needs_may_come_as_it_likes() -> None:
 
 
 def slow(
-    channels: tuple[str, ...], name: str, hz: float, arrives_hz: float, speed: float | None = 25.0
+    channels: tuple[str, ...], name: str, hz: float, arrives_hz: float, speed: float | None
 ) -> list[tuple[str, bool]]:
     paced = {one: Paced(one, "ATTITUDE", 50.0, 50.0) for one in channels}
     paced[name] = Paced(name, "ATTITUDE", arrives_hz, hz)
@@ -183,20 +184,24 @@ def slow(
 NO_FORCE = ("elevator", "q", "alpha")
 
 
-def test_a_slow_angle_of_attack_stops_only_where_the_motion_replaces_none() -> None:
-    assert slow((*NO_FORCE, "a_z"), "alpha", 9.0, 9.0) == [("rate", False)]
-    assert slow(NO_FORCE, "alpha", 9.0, 9.0) == [("rate", True)]
-    assert slow((*NO_FORCE, "a_z"), "alpha", 9.0, 9.0, None) == [("rate", True)]
-    assert slow((*NO_FORCE, "a_z"), "q", 9.0, 9.0) == [("rate", True)]
+WITH_FORCE = (*NO_FORCE, "a_z")
 
 
-def test_a_fast_message_with_old_values_is_a_matter_of_renewal() -> None:
-    assert slow(NO_FORCE, "alpha", 20.0, 50.0) == [("renewal", False)]
-    assert slow(NO_FORCE, "alpha", 20.0, 20.0) == [("rate", False)]
-
-
-def test_a_channel_that_is_missing_has_no_rate() -> None:
-    assert slow(("elevator", "q", "a_z"), "q", 50.0, 50.0) == []
+@row(
+    "a slow angle that the motion replaces is allowed",
+    WITH_FORCE, "alpha", 9.0, 9.0, 25.0, [("rate", False)],
+)  # fmt: skip
+@row("a slow angle without the force stops the flight", NO_FORCE, "alpha", 9.0, 9.0, 25.0, [("rate", True)])
+@row("a slow angle without air speed stops the flight", WITH_FORCE, "alpha", 9.0, 9.0, None, [("rate", True)])
+@row("a slow pitch rate stops the flight", WITH_FORCE, "q", 9.0, 9.0, 25.0, [("rate", True)])
+@row(
+    "a fast message of old values is renewed slowly",
+    NO_FORCE, "alpha", 20.0, 50.0, 25.0, [("renewal", False)],
+)  # fmt: skip
+@row("a slow message with new values is slow", NO_FORCE, "alpha", 20.0, 20.0, 25.0, [("rate", False)])
+@row("a channel that is missing has no rate", ("elevator", "q", "a_z"), "q", 50.0, 50.0, 25.0, [])
+def test_the_limits_of_a_slow_channel(channels, name, hz, arrives_hz, speed, limits) -> None:
+    assert slow(channels, name, hz, arrives_hz, speed) == limits
 
 
 def test_a_missing_accelerometer_costs_more_the_faster_the_aircraft_flies() -> None:

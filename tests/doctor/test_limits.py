@@ -65,7 +65,3 @@ def test_a_second_path_is_told_with_its_share_its_lateness_and_a_mend() -> None:
     assert limit.text == "a second path repeats 48 % of the packets, 6.0 s late"
     assert "one path" in limit.fix
     assert not limit.stops
-
-
-def test_single_packets_that_a_network_repeats_are_no_second_path() -> None:
-    assert path_limits(0.3, 0.01) == []

@@ -1,13 +1,10 @@
 """Samples in a natural period: the number shown, its limits, and when a flight is of no use."""
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 
 from advisor.doctor.expectation import NOISE, Assumed
-from advisor.doctor.pace import Paced, rate_limits, steadiness_limits
-from advisor.doctor.survey import Arrival
+from advisor.doctor.pace import Paced, rate_limits
 from advisor.flight.vehicle.vehicle import Vehicle
 from advisor.model.short_period import ShortPeriod
 
@@ -48,34 +45,6 @@ def test_fewer_samples_than_the_least_stop_the_flight(hz: float, samples: str, s
 
 def test_twenty_samples_in_a_natural_period_are_enough() -> None:
     assert limits(q=41.0, alpha=41.0, elevator=41.0) == []
-
-
-def arrival(*, lowest_hz: float = 50.0, largest_gap_s: float = 0.02) -> Arrival:
-    return Arrival("ATTITUDE", 3000, 50.0, 1.0, largest_gap_s, 50.0, lowest_hz)
-
-
-@pytest.mark.parametrize(
-    ("flown", "codes"),
-    [
-        (arrival(), []),
-        (arrival(lowest_hz=31.0), []),
-        (arrival(lowest_hz=29.0), ["rate_fell"]),
-        (arrival(largest_gap_s=0.24), []),
-        (arrival(largest_gap_s=0.26), ["gap"]),
-    ],
-)
-def test_a_message_falls_below_six_tenths_of_its_rate_or_misses_half_a_period(
-    flown: Arrival, codes: list[str]
-) -> None:
-    found = steadiness_limits({"ATTITUDE": flown}, {"ATTITUDE"}, 0.5, "telemetry")
-    assert [limit.code for limit in found] == codes
-
-
-def test_a_slow_message_misses_three_intervals() -> None:
-    slow = replace(arrival(lowest_hz=10.0, largest_gap_s=0.29), rate_hz=10.0)
-    assert steadiness_limits({"ATTITUDE": slow}, {"ATTITUDE"}, 0.5, "telemetry") == []
-    gap = replace(slow, largest_gap_s=0.31)
-    assert len(steadiness_limits({"ATTITUDE": gap}, {"ATTITUDE"}, 0.5, "telemetry")) == 1
 
 
 def test_a_rate_that_falls_is_told_with_that_of_its_best_ten_seconds():

@@ -19,10 +19,6 @@ def test_a_sound_stream_is_no_defect() -> None:
     assert repeat_limits([arrival("ATTITUDE", 50.0, 49.5), arrival("RAW_IMU", 50.0, float("nan"))]) == []
 
 
-def test_servo_outputs_may_rest() -> None:
-    assert repeat_limits([arrival("SERVO_OUTPUT_RAW", 50.0, 6.6)]) == []
-
-
 def test_defects_of_the_data_are_said_before_numbers_of_the_file() -> None:
     limits = [
         Limit("calibration", "not calibrated", "calibrate"),

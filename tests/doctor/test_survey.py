@@ -110,12 +110,6 @@ def test_a_rate_that_falls_for_most_of_a_record_is_the_mean_and_no_row_of_gaps()
     assert arrivals["ATTITUDE"].lowest_hz == pytest.approx(6.25, abs=0.3)
 
 
-def test_a_silence_of_the_link_is_a_gap_and_changes_no_rate() -> None:
-    t = np.arange(0.0, 60.0, 0.02)
-    _, arrivals = surveyed([attitude(t[(t < 20.0) | (t > 23.0)])])
-    assert arrivals["ATTITUDE"].rate_hz == pytest.approx(50.0)
-
-
 @pytest.mark.parametrize("times", [5.0, 1.0 / 3.0])
 def test_the_clock_of_a_simulator_is_no_defect_and_is_said(times: float) -> None:
     t = np.arange(0.0, 60.0, 0.02)

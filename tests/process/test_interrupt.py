@@ -7,6 +7,8 @@ import subprocess
 import sys
 from subprocess import CompletedProcess
 
+from tests.rows import row
+
 BEGIN = """
 import signal, sys, time
 from contextlib import contextmanager
@@ -17,6 +19,18 @@ interrupt._LOST_AFTER_S = 0.01
 
 def ctrl_c():
     signal.raise_signal(signal.SIGINT)
+
+def swallowed():
+    try:
+        ctrl_c()
+    except BaseException:
+        pass
+
+def after_an_error():
+    try:
+        raise OSError("the browser is gone")
+    except OSError:
+        time.sleep(0.1)
 
 @contextmanager
 def recording(closing=lambda: time.sleep(0.1)):
@@ -33,32 +47,33 @@ def program(text: str) -> "CompletedProcess[str]":
     return subprocess.run([sys.executable, "-c", BEGIN + text], capture_output=True, text=True, timeout=60)
 
 
-def test_a_recording_that_closes_slowly_is_closed_in_order() -> None:
-    run = program("""
-try:
-    with in_order(), recording():
-        ctrl_c()
-except Interrupted as end:
-    print(end, end.code)
-""")
-    assert run.stdout == "closed\nStopped. 130\n", run.stderr
-
-
-def test_an_error_on_the_way_does_not_cut_a_slow_end_short() -> None:
-    run = program("""
-def closing():
-    try:
-        raise OSError("the browser is gone")
-    except OSError:
-        time.sleep(0.1)
-
-try:
-    with in_order(), recording(closing):
-        ctrl_c()
-except Interrupted as end:
-    print(end)
-""")
-    assert run.stdout == "closed\nStopped.\n", run.stderr
+@row(
+    "a recording that closes slowly is closed in order",
+    "with in_order(), recording(): ctrl_c()", "closed\nStopped.",
+)  # fmt: skip
+@row(
+    "an error on the way does not cut a slow end short",
+    "with in_order(), recording(after_an_error): ctrl_c()", "closed\nStopped.",
+)  # fmt: skip
+@row(
+    "an exception that a library swallows is raised again",
+    "with in_order(), recording(): swallowed(); time.sleep(30.0); print('never')", "closed\nStopped.",
+)  # fmt: skip
+@row(
+    "a block that ends with a swallowed exception is interrupted",
+    "interrupt._LOST_AFTER_S = 100.0\n    with in_order(): swallowed()", "Stopped.",
+)  # fmt: skip
+@row(
+    "two signals of one key press count once",
+    "interrupt._ONE_PRESS_S = 100.0\n    with in_order(), recording(ctrl_c): ctrl_c()", "closed\nStopped.",
+)  # fmt: skip
+@row(
+    "the outer of two blocks gives the sentence",
+    "with in_order(lambda: 'It is here.'), recording(), in_order(): ctrl_c()", "closed\nIt is here.",
+)  # fmt: skip
+def test_a_block_that_is_interrupted_ends_in_order(block: str, printed: str) -> None:
+    run = program(f"try:\n    {block}\nexcept Interrupted as end:\n    print(end, end.code)\n")
+    assert run.stdout == f"{printed} 130\n", run.stderr
 
 
 def test_no_alarm_is_left_to_kill_the_process_after_its_orderly_end() -> None:
@@ -72,37 +87,6 @@ except Interrupted:
     assert run.stdout == "(0.0, 0.0) True\n", run.stderr
 
 
-def test_an_exception_that_a_library_swallows_is_raised_again() -> None:
-    run = program("""
-try:
-    with in_order(), recording():
-        try:
-            ctrl_c()
-        except BaseException:
-            pass
-        time.sleep(30.0)
-        print("never")
-except Interrupted as end:
-    print(end)
-""")
-    assert run.stdout == "closed\nStopped.\n", run.stderr
-
-
-def test_a_block_that_ends_with_a_swallowed_exception_is_interrupted() -> None:
-    run = program("""
-interrupt._LOST_AFTER_S = 100.0
-try:
-    with in_order():
-        try:
-            ctrl_c()
-        except BaseException:
-            pass
-except Interrupted as end:
-    print(end)
-""")
-    assert run.stdout == "Stopped.\n", run.stderr
-
-
 def test_a_second_ctrl_c_ends_at_once() -> None:
     run = program("""
 interrupt._ONE_PRESS_S = 0.0
@@ -112,26 +96,3 @@ with in_order(lambda: "Stopped; the recording is here."), recording(ctrl_c):
     assert run.returncode == 130
     assert run.stdout == ""
     assert run.stderr == "Stopped; the recording is here.\n"
-
-
-def test_two_signals_of_one_key_press_count_once() -> None:
-    run = program("""
-interrupt._ONE_PRESS_S = 100.0
-try:
-    with in_order(), recording(ctrl_c):
-        ctrl_c()
-except Interrupted as end:
-    print(end)
-""")
-    assert run.stdout == "closed\nStopped.\n", run.stderr
-
-
-def test_the_outer_of_two_blocks_gives_the_sentence() -> None:
-    run = program("""
-try:
-    with in_order(lambda: "The recording is here."), recording(), in_order():
-        ctrl_c()
-except Interrupted as end:
-    print(end)
-""")
-    assert run.stdout == "closed\nThe recording is here.\n", run.stderr

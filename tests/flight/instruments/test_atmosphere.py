@@ -10,6 +10,7 @@ from advisor.flight.maneuvers.maneuver import Maneuver, Span
 from advisor.flight.signals.channels import GIVEN_AIRSPEED
 from advisor.flight.signals.record import Channel
 from advisor.flight.signals.true_airspeed import standard_density, standard_pressure
+from tests.rows import row
 
 SPAN = Span(0.0, 1.0, 2.0, 3.0, "3-2-1-1", (), "quiet")
 
@@ -36,21 +37,24 @@ def test_the_standard_atmosphere_is_the_tabulated_one(
     assert standard_density(pressure_pa) == pytest.approx(density, abs=1e-4)
 
 
-def test_pressure_goes_before_the_height() -> None:
-    found = air_flown([flown({"static_pressure": 89_875.0, "altitude": 50.0})])
-    assert (found.source, round(found.density_kg_m3, 3)) == ("pressure", 1.112)
+NO_AIR = {"static_pressure": 0.0, "altitude": 1000.0}
+PRESSURE = {"static_pressure": 90_000.0}
+BOTH = {"static_pressure": 89_875.0, "altitude": 50.0}
 
 
-def test_a_given_temperature_makes_the_gas_law_of_pressure_or_height() -> None:
-    by_pressure = air_flown([flown({"static_pressure": 90_000.0})], 26.85)
-    assert (by_pressure.source, round(by_pressure.density_kg_m3, 4)) == ("pressure and temperature", 1.0451)
-    by_height = air_flown([flown({"altitude": 1000.0})], 26.85)
-    assert (by_height.source, round(by_height.density_kg_m3, 4)) == ("height and temperature", 1.0436)
-
-
-def test_the_height_serves_where_the_pressure_is_that_of_no_air() -> None:
-    found = air_flown([flown({"static_pressure": 0.0, "altitude": 1000.0})])
-    assert (found.source, round(found.density_kg_m3, 3)) == ("height", 1.112)
+@row(
+    "pressure goes before the height",
+    {"static_pressure": 89_875.0, "altitude": 50.0}, None, "pressure", 1.1116,
+)  # fmt: skip
+@row("a temperature makes the gas law of the pressure", PRESSURE, 26.85, "pressure and temperature", 1.0451)
+@row(
+    "a temperature makes the gas law of the height",
+    {"altitude": 1000.0}, 26.85, "height and temperature", 1.0436,
+)  # fmt: skip
+@row("the height serves where the pressure is that of no air", NO_AIR, None, "height", 1.1116)
+def test_the_density_comes_from(values, celsius: float | None, source: str, density: float) -> None:
+    found = air_flown([flown(values)], celsius)
+    assert (found.source, round(found.density_kg_m3, 4)) == (source, density)
 
 
 def test_sea_level_is_said_where_nothing_is_logged() -> None:

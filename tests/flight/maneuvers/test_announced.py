@@ -17,9 +17,11 @@ from advisor.scripts.table import Source, script_table
 from tests.flight.columns import Wire, attitude, fly, heartbeat, plane_parameters, pull, servo, text
 from tests.flight.maneuvers.test_marks import PIECE
 from tests.flight.stream.test_stream import as_plain, flown, maneuvers
+from tests.rows import row
 from tests.scripts.engine import Engine
 
 BEGIN, END = "ADVISOR BEGIN 3 reverse 3-2-1-1", "ADVISOR END 3 done"
+SCRIPT = "ADVISOR SCRIPT my aircraft 1a2b3c4d"
 
 
 def announced(*texts: tuple[float, str], seconds: float = 14.0, mode: int = 0) -> Wire:
@@ -49,10 +51,12 @@ def test_begin_and_end_mark_a_manoeuvre_and_its_free_response():
     assert maneuver.span.end_s == pytest.approx(60.0, abs=0.05)
 
 
-def test_a_script_that_rests_before_its_end_ends_the_record_there():
-    _, events = flown(announced((53.0, BEGIN), (60.5, END)))
+@row("a script that rests before its end ends the record there", [(60.5, END)], 60.5)
+@row("an announced input ends the free response", [(57.0, END), (58.5, "ADVISOR BEGIN 4 doublet")], 58.5)
+def test_the_record_of_an_announced_input_ends(texts, end_s: float):
+    _, events = flown(announced((53.0, BEGIN), *texts))
     (maneuver,) = maneuvers(events)
-    assert maneuver.span.end_s == pytest.approx(60.5, abs=0.05)
+    assert maneuver.span.end_s == pytest.approx(end_s, abs=0.05)
 
 
 @pytest.mark.parametrize(("by", "ends_s"), [("script", 20.0), ("text", 23.0)])
@@ -64,26 +68,27 @@ def test_a_scripts_rest_counts_also_at_another_level_than_the_loop_held_before(b
     assert marked_span(mark, Channel("elevator", t, y)).end_s == pytest.approx(ends_s)
 
 
-def test_the_announced_name_is_that_of_the_input():
-    _, events = flown(announced((53.0, BEGIN), (57.0, END)))
-    assert [m.span.kind for m in maneuvers(events)] == ["reverse 3-2-1-1"]
-
-
-@pytest.mark.parametrize("name", ["a wobble", "", "rudder doublet"])
-def test_a_name_that_the_elevator_does_not_have_leaves_the_input_its_own(name: str):
+@row("the announced name is that of the input", "reverse 3-2-1-1", "reverse 3-2-1-1")
+@row("an unknown name leaves the input its own", "a wobble", "3-2-1-1")
+@row("no name leaves the input its own", "", "3-2-1-1")
+@row("a name of the rudder leaves the input its own", "rudder doublet", "3-2-1-1")
+def test_an_announced_input_is_called(name: str, kind: str):
     _, events = flown(announced((53.0, f"ADVISOR BEGIN 3 {name}"), (57.0, END)))
-    assert [m.span.kind for m in maneuvers(events)] == ["3-2-1-1"]
+    assert [m.span.kind for m in maneuvers(events)] == [kind]
 
 
-def test_in_a_mode_that_closes_the_pitch_loop_an_announced_input_counts_too():
-    _, events = flown(announced((53.0, BEGIN), (57.0, END), mode=5))
-    assert [m.span.closed_by for m in maneuvers(events)] == ["marked by a script"]
+MARKED = "marked by a script"
 
 
-def test_the_free_response_ends_where_the_next_input_is_announced():
-    _, events = flown(announced((53.0, BEGIN), (57.0, END), (58.5, "ADVISOR BEGIN 4 doublet")))
-    (maneuver,) = maneuvers(events)
-    assert maneuver.span.end_s == pytest.approx(58.5, abs=0.05)
+@row("an announced input in a closed pitch loop counts", [(53.0, BEGIN), (57.0, END)], 5, MARKED)
+@row("an input that is enough is judged", [(53.0, BEGIN), (57.0, "ADVISOR END 3 done: enough")], 0, MARKED)
+@row("steps by hand in manual count beside a script", [(50.5, SCRIPT)], 0, "quiet")
+@row("steps in a loop without their END are judged", [(50.5, SCRIPT), (53.5, BEGIN)], 5, "quiet")
+@row("steps in a loop without their BEGIN are judged", [(50.5, SCRIPT), (57.0, END)], 5, "quiet")
+@row("a script heard after the movement changes nothing", [(63.5, SCRIPT)], 5, "quiet")
+def test_the_texts_and_the_mode_decide_what_ends_the_input(texts, mode: int, closed_by: str):
+    _, events = flown(announced(*texts, mode=mode))
+    assert [m.span.closed_by for m in maneuvers(events)] == [closed_by]
 
 
 def test_an_aborted_input_is_listed_with_its_reason_and_not_judged():
@@ -96,11 +101,6 @@ def test_an_aborted_input_is_listed_with_its_reason_and_not_judged():
         "input 3 (reverse 3-2-1-1) was ended early by the script: the stick moved by 12 %; not judged"
     )
     assert (activity.start_s, activity.end_s) == pytest.approx((53.0, 56.0), abs=0.05)
-
-
-def test_an_input_that_ends_early_because_it_is_enough_is_judged():
-    _, events = flown(announced((53.0, BEGIN), (57.0, "ADVISOR END 3 done: enough")))
-    assert [m.span.closed_by for m in maneuvers(events)] == ["marked by a script"]
 
 
 def test_an_early_end_in_two_chunks_is_read_whole():
@@ -124,9 +124,6 @@ def test_an_input_that_another_abort_ends_quickly_is_no_bounce():
     assert activity.reason == "aborted"
 
 
-SCRIPT = "ADVISOR SCRIPT my aircraft 1a2b3c4d"
-
-
 def test_steps_that_the_script_does_not_announce_are_the_loops():
     wire = announced((50.5, SCRIPT), mode=5)
     _, events = flown(wire)
@@ -136,22 +133,6 @@ def test_steps_that_the_script_does_not_announce_are_the_loops():
         "autopilot",
         "the elevator moved in FBWA, and the script in the autopilot announced no input; not a test input",
     )
-
-
-def test_steps_by_hand_in_manual_count_beside_a_script():
-    _, events = flown(announced((50.5, SCRIPT), mode=0))
-    assert [m.span.closed_by for m in maneuvers(events)] == ["quiet"]
-
-
-@pytest.mark.parametrize("alone", [(53.5, BEGIN), (57.0, END)])
-def test_steps_in_a_loop_whose_begin_or_end_is_lost_are_judged_by_their_shape(alone: tuple[float, str]):
-    _, events = flown(announced((50.5, SCRIPT), alone, mode=5))
-    assert [m.span.closed_by for m in maneuvers(events)] == ["quiet"]
-
-
-def test_a_script_heard_after_the_movement_changes_nothing():
-    _, events = flown(announced((63.5, SCRIPT), mode=5))
-    assert [m.span.closed_by for m in maneuvers(events)] == ["quiet"]
 
 
 def test_a_begin_without_an_end_is_told_and_hides_nothing():
@@ -209,8 +190,10 @@ def test_a_text_without_a_number_is_told_with_the_known_ones():
     assert sentence.startswith("The text ADVISOR BEGIN doublet is no mark")
 
 
-def test_further_texts_of_a_script_are_no_marks():
-    assert told(announced((53.0, "ADVISOR WAITS: bank"), (54.0, "ADVISOR NEXT 3 doublet"))) == []
+@row("further texts are no marks", [(53.0, "ADVISOR WAITS: bank"), (54.0, "ADVISOR NEXT 3 doublet")])
+@row("without an aircraft file any script is taken", [(51.0, "ADVISOR SCRIPT big wing 1a2b3c4d")])
+def test_nothing_is_said_of_texts_of_a_script(texts):
+    assert told(announced(*texts)) == []
 
 
 def test_a_script_of_another_aircraft_is_told_with_both_names():
@@ -245,10 +228,6 @@ def test_a_script_with_earlier_calibrations_is_told(name: str):
         f"The script in the autopilot was written for other calibrations of {name} than those in the "
         "aircraft file; write the script anew: advisor script ardupilot."
     ]
-
-
-def test_without_an_aircraft_file_any_script_is_taken():
-    assert told(announced((51.0, "ADVISOR SCRIPT big wing 1a2b3c4d"))) == []
 
 
 @pytest.mark.parametrize("begun", [((53.0, BEGIN),), ()], ids=["announced", "not announced"])
@@ -331,11 +310,8 @@ def test_a_surface_that_the_script_holds_is_no_part_of_the_input():
     assert sides == []
 
 
-def test_an_elevator_that_the_loop_moves_in_an_announced_aileron_doublet_is_no_test():
-    pitching, (side,) = _in_a_loop((1, 2), "aileron doublet")
-    assert (pitching, side.kind) == ([], "aileron doublet")
-
-
-def test_an_aileron_that_the_loop_moves_in_an_announced_3_2_1_1_is_no_test():
-    (pitch,), sides = _in_a_loop((1, 2), "3-2-1-1")
-    assert (pitch.kind, sides) == ("3-2-1-1", [])
+@row("an elevator in an aileron doublet is no test", "aileron doublet", [], ["aileron doublet"])
+@row("an aileron in a 3-2-1-1 is no test", "3-2-1-1", ["3-2-1-1"], [])
+def test_the_loop_moves_another_control_in_an_announced_input(name: str, pitch: list[str], side: list[str]):
+    pitching, rolling = _in_a_loop((1, 2), name)
+    assert ([one.kind for one in pitching], [one.kind for one in rolling]) == (pitch, side)

@@ -8,6 +8,7 @@ from advisor.flight.maneuvers.events import Activity
 from advisor.flight.stream.stream import FlightStream
 from tests.flight.columns import Wire, aoa, attitude, plane_parameters, pull, servo
 from tests.heard import hear
+from tests.rows import row
 
 START_S = 1000.0
 
@@ -48,34 +49,25 @@ def found(wire):
     return next((activity.text for activity in moved if activity.reason == "ground"), None)
 
 
-def test_a_movement_in_flight_is_a_manoeuvre():
-    assert found(movement()) is None
+@row("a movement in flight is a manoeuvre", {})
+@row("an autopilot that says in air is believed", {"landed": 2})
+@row("a converter's disarmed without ground speed grounds no flight", {"armed": False, "over_ground": 0.0})
+@row("a converter's disarmed grounds no slow flight", {"speed": 9.0, "armed": False, "over_ground": 0.0})
+@row("an aircraft that hangs in a strong wind flies", {"speed": 11.0, "over_ground": 0.4, "height": 80.0})
+def test_what_is_flown_in_the_air(changes):
+    assert found(movement(**changes)) is None
 
 
-@pytest.mark.parametrize(("landed", "why"), [(1, "landed"), (3, "takes off")])
-def test_the_autopilots_own_word_counts(landed, why):
-    assert why in (found(movement(landed=landed)) or "")
+STANDS = {"speed": 6.0, "over_ground": 0.4, "height": 0.5}
+DISARMED = {"speed": 6.0, "over_ground": 0.3, "armed": False, "answer": 0.05}
 
 
-def test_an_autopilot_that_says_in_air_is_believed():
-    assert found(movement(landed=2)) is None
-
-
-def test_a_disarmed_aircraft_that_stands_in_the_wind_does_not_fly():
-    assert "disarmed" in (found(movement(speed=6.0, over_ground=0.3, armed=False, answer=0.05)) or "")
-
-
-def test_a_converter_that_knows_neither_arming_nor_speed_over_ground_does_not_ground_a_flight():
-    assert found(movement(armed=False, over_ground=0.0)) is None
-    assert found(movement(speed=9.0, armed=False, over_ground=0.0)) is None
-
-
-def test_an_armed_aircraft_that_stands_at_the_height_of_take_off_does_not_fly():
-    assert "height of take-off" in (found(movement(speed=6.0, over_ground=0.4, height=0.5)) or "")
-
-
-def test_an_aircraft_that_hangs_in_a_strong_wind_flies():
-    assert found(movement(speed=11.0, over_ground=0.4, height=80.0)) is None
+@row("the autopilot's landed counts", {"landed": 1}, "landed")
+@row("the autopilot's take-off counts", {"landed": 3}, "takes off")
+@row("a disarmed aircraft in the wind does not fly", DISARMED, "disarmed")
+@row("an armed aircraft at the height of take-off does not fly", STANDS, "height of take-off")
+def test_what_is_moved_on_the_ground(changes, why):
+    assert why in (found(movement(**changes)) or "")
 
 
 def test_a_take_off_run_and_a_crash_are_no_flight():

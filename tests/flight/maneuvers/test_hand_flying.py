@@ -8,6 +8,7 @@ from advisor.flight.maneuvers.hand_flying import flown_elsewhere
 from advisor.flight.maneuvers.maneuver import Maneuver, Span
 from advisor.flight.signals.record import Channel
 from tests.flight.elevator.elevators import PATTERNS, slewed, steps
+from tests.rows import row
 
 DEG = np.radians(1.0)
 T = np.arange(0.0, 20.0, 0.02)
@@ -42,14 +43,12 @@ def test_a_hand_flown_test_outside_of_a_limit_is_a_test(name):
     assert flown_elsewhere(record(TEST, **{name: OUTSIDE[name][0]}), Limits()) is None
 
 
-def test_a_slow_movement_within_the_limits_may_be_a_test():
-    inside = {"bank": 10.0 * DEG * RISING, "airspeed": 20.0 - RISING, "throttle": 0.5 + 0.0 * T}
-    assert flown_elsewhere(record(PULL, **inside), Limits()) is None
+INSIDE = {"bank": 10.0 * DEG * RISING, "airspeed": 20.0 - RISING, "throttle": 0.5 + 0.0 * T}
+BANKED = {"bank": OUTSIDE["bank"][0]}
 
 
-def test_the_limits_are_those_of_the_aircraft_file():
-    assert flown_elsewhere(record(PULL, bank=OUTSIDE["bank"][0]), Limits(bank_deg=60.0)) is None
-
-
-def test_an_elevator_at_two_hertz_does_not_show_whether_it_moved_slowly():
-    assert flown_elsewhere(record(PULL, every=25, bank=OUTSIDE["bank"][0]), Limits()) is None
+@row("within the limits it may be a test", INSIDE, Limits())
+@row("the limits are those of the aircraft file", BANKED, Limits(bank_deg=60.0))
+@row("an elevator at two hertz does not show whether it moved slowly", BANKED | {"every": 25}, Limits())
+def test_a_slow_movement_is_no_other_flying(others, limits):
+    assert flown_elsewhere(record(PULL, **others), limits) is None

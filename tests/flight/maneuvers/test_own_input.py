@@ -10,6 +10,7 @@ from advisor.flight.maneuvers.own_input import odds_of_own_input
 from advisor.flight.maneuvers.purpose import judged
 from advisor.flight.signals.record import Channel
 from tests.flight.elevator.elevators import coloured
+from tests.rows import row
 
 DEG = np.radians(1.0)
 STEP_S = 0.02
@@ -88,8 +89,15 @@ def test_a_test_from_steady_flight_is_an_own_input():
     assert probability(TEST, flight()) > 0.999
 
 
-def test_a_recovery_after_the_test_is_none():
-    assert probability(RECOVERY, flight(), tests=[(TEST_S, RECOVERY_S)]) < 0.05
+AFTER = [(TEST_S, RECOVERY_S)]
+
+
+@row("a recovery after the test is none", RECOVERY, {}, AFTER, 0.05)
+@row("a recovery without any delay is none", RECOVERY, {"late": 0.0}, AFTER, 0.05)
+@row("hands that tremble count for nothing", HELD, {"tremor": 0.5}, (), 0.95)
+@row("a test no larger than the hands before is in doubt", TEST, {"tremor": 4.0, "size": 0.5}, (), 0.95)
+def test_the_probability_of_an_own_input_is_below(which, changes, tests, limit):
+    assert probability(which, flight(**changes), tests=tests) < limit
 
 
 @pytest.mark.parametrize("after_s", [0.0, 0.03, 0.05, 0.08, 0.1])
@@ -98,23 +106,11 @@ def test_hands_may_take_over_between_two_bins(after_s):
     assert probability(begun, flight(), tests=[(TEST_S, RECOVERY_S - after_s)]) < 0.05
 
 
-def test_hands_that_tremble_count_for_nothing():
-    assert probability(HELD, flight(tremor=0.5)) < 0.95
-
-
 @pytest.mark.parametrize("control", [-20.0, 20.0])
 def test_the_side_that_steadies_follows_from_the_effect_of_the_control(control):
     channels, tests = flight(control), [(TEST_S, RECOVERY_S)]
     steadies, upsets = (odds(RECOVERY, channels, side * np.sign(control), tests) for side in (1.0, -1.0))
     assert steadies.log_odds < upsets.log_odds
-
-
-def test_hands_without_any_delay_are_told_too():
-    assert probability(RECOVERY, flight(late=0.0), tests=[(TEST_S, RECOVERY_S)]) < 0.05
-
-
-def test_a_test_no_larger_than_the_hands_before_is_in_doubt():
-    assert probability(TEST, flight(tremor=4.0, size=0.5)) < 0.95
 
 
 def test_the_slow_edges_of_a_hand_leave_more_than_half_of_the_odds_of_sharp_ones():

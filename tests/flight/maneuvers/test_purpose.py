@@ -8,6 +8,7 @@ from advisor.flight.maneuvers.maneuver import Maneuver, Span
 from advisor.flight.maneuvers.purpose import Because, judged
 from advisor.flight.signals.record import Channel
 from tests.flight.elevator.elevators import PATTERNS, coloured, slewed, steps
+from tests.rows import row
 
 DEG = np.radians(1.0)
 T = np.arange(0.0, 12.0, 0.02)
@@ -44,16 +45,18 @@ def reason(maneuver):
     return because.reason if isinstance(because, Because) else None
 
 
-def test_an_input_that_the_pitch_rate_shows_is_one():
-    assert reason(flown(INPUT)) is None
+FIGHTS = {"gain": (0.2, 0.3), "gust": 0.02}
 
 
-def test_the_pitch_rate_alone_will_do():
-    assert reason(flown(INPUT, without=("theta", "airspeed"))) is None
-
-
-def test_without_a_pitch_rate_nobody_can_say_that_it_was_none():
-    assert reason(flown(INPUT, without=("q",))) is None
+@row("an input that the pitch rate shows is one", {}, None)
+@row("the pitch rate alone will do", {"without": ("theta", "airspeed")}, None)
+@row("without a pitch rate nobody can say that it was none", {"without": ("q",)}, None)
+@row("an aircraft without an air speed sensor flies all the same", {"airspeed": 0.0}, None)
+@row("an input counts in gusts that a loop fights", FIGHTS, None)
+@row("an input counts in the gusts of an unknown mode", FIGHTS | {"mode": "mode 77"}, None)
+@row("a take-off by the autopilot is no input", {"gain": (0.2, 0.3), "mode": "TAKEOFF"}, "autopilot")
+def test_what_a_movement_was(changes, because):
+    assert reason(flown(INPUT, **changes)) == because
 
 
 @pytest.mark.parametrize("airspeed", [0.0, 0.5])
@@ -62,10 +65,6 @@ def test_a_stick_stirred_on_the_ground_is_no_input(airspeed):
     still = Channel("q", T, 0.05 * DEG * np.sin(T))
     channels = {**standing.channels, "q": still}
     assert reason(Maneuver(1, 0, standing.span, channels, "MANUAL")) == "ground"
-
-
-def test_an_aircraft_without_an_air_speed_sensor_flies_all_the_same():
-    assert reason(flown(INPUT, airspeed=0.0)) is None
 
 
 def test_a_correction_is_told_with_its_size_and_the_least():
@@ -83,11 +82,6 @@ def test_an_elevator_that_the_aircraft_does_not_answer_tells_nothing():
     assert because.reason == "no_information"
 
 
-@pytest.mark.parametrize("mode", ["MANUAL", "mode 77"])
-def test_an_input_counts_in_gusts_that_a_loop_fights(mode):
-    assert reason(flown(INPUT, gain=(0.2, 0.3), gust=0.02, mode=mode)) is None
-
-
 def test_a_loop_that_fights_gusts_tells_nothing_of_the_short_period():
     alone = [excitation(flown(np.zeros(len(T)), (0.3, 0.5), gust=0.04, seed=seed)) for seed in range(5)]
     assert np.median([found.external_error for found in alone]) > 0.3
@@ -95,10 +89,6 @@ def test_a_loop_that_fights_gusts_tells_nothing_of_the_short_period():
         reason(flown(np.zeros(len(T)), gain=(0.3, 0.5), gust=0.04, mode="mode 77", seed=0))
         == "no_information"
     )
-
-
-def test_while_an_autopilot_takes_off_by_itself_no_movement_is_an_input():
-    assert reason(flown(INPUT, gain=(0.2, 0.3), mode="TAKEOFF")) == "autopilot"
 
 
 @pytest.mark.parametrize("mode", ["CRUISE", "FBWA", "Stabilized"])

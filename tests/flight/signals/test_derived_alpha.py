@@ -5,6 +5,7 @@ import pytest
 
 from advisor.flight.signals.derived_alpha import derived_alpha, promised
 from tests.flight.columns import Wire
+from tests.rows import row
 
 FAST, ROLLS, STANDS = (20.0, 21.0), (1.0, 8.0), (1.0, 2.0)
 """Air speed and speed over ground, m/s; the aircraft flies above 4 m/s."""
@@ -20,22 +21,14 @@ def huds(*speeds, **left_out):
     return columns
 
 
-def test_a_rolling_aircraft_without_air_speed_gives_no_angle_and_a_standing_one_will():
-    assert promised(huds(FAST, ROLLS, STANDS), None).tolist() == [0, 2]
-
-
-@pytest.mark.parametrize(("speed", "count"), [(3.9, 0), (4.1, 1)])
-def test_an_aircraft_flies_above_four_metres_a_second(speed, count):
-    assert len(promised(huds((speed, 10.0)), None)) == count
-
-
-def test_without_a_climb_rate_there_is_no_angle():
-    assert len(promised(huds(FAST, climb=True), 20.0)) == 0
-
-
-def test_where_no_air_speed_is_recorded_or_one_is_stated_all_of_them_give_an_angle():
-    assert len(promised(huds(FAST, ROLLS, airspeed=True), None)) == 2
-    assert len(promised(huds(FAST, ROLLS), 20.0)) == 2
+@row("a rolling aircraft gives no angle and a standing one will", huds(FAST, ROLLS, STANDS), None, [0, 2])
+@row("an aircraft below four metres a second gives none", huds((3.9, 10.0)), None, [])
+@row("an aircraft above four metres a second gives one", huds((4.1, 10.0)), None, [0])
+@row("without a climb rate there is no angle", huds(FAST, climb=True), 20.0, [])
+@row("where no air speed is recorded all give an angle", huds(FAST, ROLLS, airspeed=True), None, [0, 1])
+@row("where an air speed is stated all give an angle", huds(FAST, ROLLS), 20.0, [0, 1])
+def test_the_records_that_promise_an_angle_of_attack(records, stated_m_s, promising):
+    assert promised(records, stated_m_s).tolist() == promising
 
 
 def test_the_angle_is_pitch_less_that_of_the_path_and_none_at_a_standstill():

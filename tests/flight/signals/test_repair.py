@@ -5,6 +5,7 @@ import pytest
 
 from advisor.flight.signals.record import Channel
 from advisor.flight.signals.repair import repaired
+from tests.rows import row
 
 T = 0.02 * np.arange(401)
 MOTION = 0.06 * np.exp(-0.3 * T) * np.sin(3.0 * T) + 1e-3 * np.random.default_rng(2).standard_normal(len(T))
@@ -30,24 +31,6 @@ def test_a_sound_motion_stays_as_it_is() -> None:
     assert found.said == ()
 
 
-def test_a_step_in_a_calm_record_is_no_wild_sample() -> None:
-    y = 1e-4 * np.random.default_rng(3).standard_normal(len(T))
-    y[200:] += 0.2
-    assert len(repaired(channel(y)).channel) == len(T)
-
-
-def test_a_channel_full_of_spikes_is_left_to_the_other_checks() -> None:
-    y = MOTION.copy()
-    y[::10] += 3.0
-    assert len(repaired(channel(y)).channel) == len(T)
-
-
-def test_the_elevator_may_jump() -> None:
-    y = np.zeros(len(T))
-    y[100] = 0.3
-    assert len(repaired(channel(y, "elevator")).channel) == len(T)
-
-
 def test_an_angle_of_attack_counted_from_0_to_360_deg_is_put_right() -> None:
     """An angle that goes through zero."""
     found = repaired(channel(np.mod(MOTION, 2.0 * np.pi), "alpha"))
@@ -64,6 +47,13 @@ def test_an_air_speed_that_drops_out_is_bridged_and_named() -> None:
     assert "drops out from 0:03.0 to 0:04.5 and is bridged" in found.said[0]
 
 
-def test_an_aircraft_on_the_ground_has_no_drop_out() -> None:
-    y = np.where(T < 6.0, 0.0, 1.0) + 0.01 * np.sin(50.0 * T)
-    assert len(repaired(channel(y, "airspeed")).channel) == len(T)
+K = np.arange(len(T))
+CALM = 1e-4 * np.random.default_rng(3).standard_normal(len(T))
+
+
+@row("a step in a calm record is no wild sample", "q", CALM + 0.2 * (K >= 200))
+@row("a channel full of spikes is left to the other checks", "q", MOTION + 3.0 * (K % 10 == 0))
+@row("the elevator may jump", "elevator", 0.3 * (K == 100))
+@row("an aircraft on the ground has no drop-out", "airspeed", 1.0 * (T >= 6.0) + 0.01 * np.sin(50.0 * T))
+def test_no_sample_is_left_out(name: str, y: np.ndarray) -> None:
+    assert len(repaired(channel(y, name)).channel) == len(T)

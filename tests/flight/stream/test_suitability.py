@@ -8,6 +8,7 @@ from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft.controls import Elevator
 from advisor.flight.stream.stream import FlightStream
 from tests.flight.columns import Wire, attitude, fly, heartbeat, hud, servo
+from tests.rows import row
 
 
 def problems(wire, aircraft=None, **options):
@@ -28,8 +29,16 @@ def flight(onsets=(4.0,), rate_hz=50.0, without=(), **sender):
     return wire
 
 
-def test_a_flight_with_a_manoeuvre_has_no_problem():
-    assert problems(flight()) == []
+NO_CLOCK = ("ATTITUDE", "AOA_SSA", "SERVO_OUTPUT_RAW")
+
+
+@row("a flight with a manoeuvre has no problem", (), [])
+@row("without attitude there is no clock and only that is said", ("ATTITUDE",), ["no_pitch_rate"])
+@row("without attitude other messages are missed too", NO_CLOCK, ["no_pitch_rate", "no_elevator", "no_alpha"])
+@row("an angle of attack that can be derived is not missing", ("AOA_SSA",), [])
+@row("an angle of attack that cannot be derived is missing", ("AOA_SSA", "VFR_HUD"), ["no_alpha"])
+def test_a_flight_without_messages_has_these_problems(without, found):
+    assert codes(flight(without=without)) == found
 
 
 def test_a_ground_station_alone_is_no_vehicle():
@@ -92,15 +101,6 @@ def test_an_output_without_a_pulse_asks_for_the_safety_switch_and_not_for_its_me
     assert problem.fix.startswith("Release the safety switch and arm the vehicle")
 
 
-def test_without_attitude_there_is_no_clock_and_only_that_is_said():
-    assert codes(flight(without=("ATTITUDE",))) == ["no_pitch_rate"]
-
-
-def test_alpha_is_missing_only_when_it_cannot_even_be_derived():
-    assert codes(flight(without=("AOA_SSA",))) == []
-    assert codes(flight(without=("AOA_SSA", "VFR_HUD"))) == ["no_alpha"]
-
-
 def test_a_flight_without_test_inputs_says_what_to_fly():
     (problem,) = problems(flight(onsets=()))
     assert problem.code == "no_maneuver"
@@ -161,9 +161,3 @@ def test_a_pitch_rate_that_stands_still_while_the_attitude_moves_is_named():
     (problem,) = problems(wire)
     assert problem.code == "frozen"
     assert "gyro" in problem.fix
-
-
-def test_without_attitude_what_is_missing_besides_is_told_in_the_same_answer():
-    assert codes(flight(without=("ATTITUDE", "AOA_SSA", "SERVO_OUTPUT_RAW"))) == [
-        "no_pitch_rate", "no_elevator", "no_alpha",
-    ]  # fmt: skip

@@ -12,6 +12,7 @@ from advisor.flight.stream import suitability
 from advisor.flight.vehicle.surfaces import Calibration, Part, Surface
 from advisor.flight.vehicle.vehicle import Vehicle
 from advisor.words.problems import Problem
+from tests.rows import row
 
 PLANE = Vehicle(1, 1, "ardupilot", 1)
 LOG = replace(PLANE, carrier="dataflash")
@@ -80,30 +81,12 @@ def test_only_ardupilot_is_asked_for_its_message_of_the_angle_of_attack() -> Non
     assert "AOA_SSA" not in other.fix
 
 
-def test_a_frozen_accelerometer_replaces_no_angle_of_attack() -> None:
-    frozen = Distrust("frozen", "a_z", "the specific force stands still", "restart it", 9.8)
-    assert codes(arriving("elevator", "q", *MOTION), still=[frozen]) == ["no_alpha"]
-    speed = replace(frozen, channel="airspeed")
-    assert codes(arriving("elevator", "q", *MOTION), still=[speed]) == []
-
-
-def test_only_a_frozen_pitch_rate_is_a_problem_of_its_own() -> None:
-    frozen = Distrust("frozen", "q", "the pitch rate stands still", "restart it", 0.0)
-    channels = arriving("elevator", "q", "alpha")
-    assert codes(channels, still=[frozen]) == ["frozen"]
-    assert codes(channels, still=[replace(frozen, channel="a_z")]) == []
-
-
 @pytest.mark.parametrize(("hz", "found"), [(7.9, ["rate"]), (8.0, [])])
 @pytest.mark.parametrize("name", ["elevator", "q", "alpha"])
 def test_eight_samples_a_second_are_the_least_of_each_needed_channel(
     name: str, hz: float, found: list[str]
 ) -> None:
     assert codes(arriving("elevator", "q", "alpha", **{name: hz})) == found
-
-
-def test_an_angle_of_attack_that_the_motion_replaces_may_be_slow() -> None:
-    assert codes(arriving("elevator", "q", *MOTION, alpha=4.0)) == []
 
 
 def test_a_channel_of_one_sample_arrives_hardly_at_all() -> None:
@@ -115,11 +98,6 @@ def test_an_angle_derived_from_the_climb_is_as_fast_as_vfr_hud() -> None:
     derived = {"alpha": ChannelStatus("theta - climb", "derived", 4.0, 0.1, 9.0)}
     (problem,) = told(arriving("elevator", "q") | derived)
     assert problem.text.startswith("VFR_HUD arrives at 4.0 Hz")
-
-
-def test_without_a_pitch_rate_no_rate_is_judged() -> None:
-    assert codes(arriving("alpha", elevator=2.0)) == ["no_pitch_rate", "no_alpha"]
-    assert codes(arriving("alpha", elevator=2.0), LOG) == ["no_pitch_rate"]
 
 
 @CARRIERS
@@ -143,14 +121,6 @@ def test_without_a_pitch_rate_nothing_says_that_an_output_has_no_pulse(vehicle: 
 def test_an_unknown_elevator_is_one_problem(vehicle: Vehicle) -> None:
     unknown = Problem("no_elevator", "No output is the elevator.", "Set elevator.output.")
     assert told(arriving("q", "alpha"), vehicle, unknown) == [unknown]
-
-
-def test_without_a_clock_a_message_that_came_is_not_called_missing() -> None:
-    came = ("SERVO_OUTPUT_RAW", "AOA_SSA")
-    assert codes({}, seen=came) == ["no_pitch_rate"]
-    assert codes({}, seen=("ACTUATOR_OUTPUT_STATUS", "AOA_SSA")) == ["no_pitch_rate"]
-    assert codes({}, seen=("AOA_SSA",)) == ["no_pitch_rate", "no_elevator"]
-    assert codes({}, seen=("SERVO_OUTPUT_RAW", "RAW_IMU", "VFR_HUD")) == ["no_pitch_rate"]
 
 
 @pytest.mark.parametrize(
@@ -179,12 +149,43 @@ def test_movements_are_counted_from_the_second_on() -> None:
     assert problem.text.endswith("of the elevator: a pulse; a doublet (2 times).")
 
 
-def test_no_manoeuvre_is_a_problem_only_where_nothing_else_is() -> None:
-    assert codes(arriving("elevator", "q", "alpha"), maneuvers=0) == ["no_maneuver"]
-    assert codes(arriving("elevator", "q"), maneuvers=0) == ["no_alpha"]
-    assert codes(arriving("elevator", "q", "alpha"), maneuvers=1) == []
+WHOLE = arriving("elevator", "q", "alpha")
+BY_MOTION = arriving("elevator", "q", *MOTION)
+NO_ALPHA = arriving("elevator", "q")
+SLOW = arriving("alpha", elevator=2.0)
 
 
-def test_another_vehicle_is_named_where_the_followed_one_cannot_be_used() -> None:
-    assert codes(arriving("elevator", "q"), others=(7, 5)) == ["other_vehicles", "no_alpha"]
-    assert codes(arriving("elevator", "q", "alpha"), others=(7,)) == []
+def frozen(channel: str) -> dict[str, object]:
+    return {"still": [Distrust("frozen", channel, f"{channel} stands still", "restart it", 0.0)]}
+
+
+@row("a frozen accelerometer replaces no angle of attack", BY_MOTION, frozen("a_z"), ["no_alpha"])
+@row("a frozen air speed hinders nothing", BY_MOTION, frozen("airspeed"), [])
+@row("a frozen pitch rate is a problem of its own", WHOLE, frozen("q"), ["frozen"])
+@row("a frozen accelerometer is no problem beside a vane", WHOLE, frozen("a_z"), [])
+@row("an angle that the motion replaces may be slow", arriving("elevator", "q", *MOTION, alpha=4.0), {}, [])
+@row("without a pitch rate no rate is judged", SLOW, {}, ["no_pitch_rate", "no_alpha"])
+@row("in a log no rate is judged without a pitch rate", SLOW, {"vehicle": LOG}, ["no_pitch_rate"])
+@row("no manoeuvre is a problem", WHOLE, {"maneuvers": 0}, ["no_maneuver"])
+@row("a missing manoeuvre is not told beside another problem", NO_ALPHA, {"maneuvers": 0}, ["no_alpha"])
+@row("one manoeuvre is enough", WHOLE, {"maneuvers": 1}, [])
+@row("another vehicle is named", NO_ALPHA, {"others": (7, 5)}, ["other_vehicles", "no_alpha"])
+@row("another vehicle is not named where the followed one serves", WHOLE, {"others": (7,)}, [])
+@row(
+    "pulses and angle are not called missing",
+    {}, {"seen": ("SERVO_OUTPUT_RAW", "AOA_SSA")}, ["no_pitch_rate"],
+)  # fmt: skip
+@row(
+    "PX4's pulses are not called missing",
+    {}, {"seen": ("ACTUATOR_OUTPUT_STATUS", "AOA_SSA")}, ["no_pitch_rate"],
+)  # fmt: skip
+@row(
+    "pulses that did not come are called missing",
+    {}, {"seen": ("AOA_SSA",)}, ["no_pitch_rate", "no_elevator"],
+)  # fmt: skip
+@row(
+    "an angle by motion is not called missing",
+    {}, {"seen": ("SERVO_OUTPUT_RAW", "RAW_IMU", "VFR_HUD")}, ["no_pitch_rate"],
+)  # fmt: skip
+def test_the_problems_of_a_stream(channels, more, found: list[str]) -> None:
+    assert codes(channels, **more) == found

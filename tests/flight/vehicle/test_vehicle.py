@@ -5,6 +5,7 @@ import pytest
 from advisor.flight.vehicle.modes import closes_pitch_loop, hovers, mode_name
 from advisor.flight.vehicle.vehicle import Vehicle, VehicleFinder, is_aircraft
 from tests.flight.columns import Wire, heartbeat
+from tests.rows import row
 
 GCS, GIMBAL, ONBOARD, PLANE = 6, 26, 18, 1
 INVALID, ARDUPILOT, PX4 = 8, 3, 12
@@ -30,18 +31,12 @@ def test_a_ground_station_or_gimbal_heard_first_is_not_the_vehicle():
     assert finder.others == set()
 
 
-def test_of_several_vehicles_the_first_is_followed_and_the_others_are_known():
-    finder = heard({"system": 3}, {"system": 5}, {"system": 3})
+@row("of several vehicles the first is followed and the others are known", None, 3, {5})
+@row("the vehicle asked for is waited for", 5, 5, {3})
+def test_one_of_several_vehicles_is_followed(asked, system, others):
+    finder = heard({"system": 3}, {"system": 5}, {"system": 3}, target_system=asked)
     assert finder.vehicle is not None
-    assert finder.vehicle.system == 3
-    assert finder.others == {5}
-
-
-def test_the_vehicle_asked_for_is_waited_for():
-    finder = heard({"system": 3}, {"system": 5}, target_system=5)
-    assert finder.vehicle is not None
-    assert finder.vehicle.system == 5
-    assert finder.others == {3}
+    assert (finder.vehicle.system, finder.others) == (system, others)
 
 
 def test_an_unknown_autopilot_is_named_by_its_number():

@@ -7,6 +7,7 @@ from advisor.decision.inputs import StepInput
 from advisor.mavlink.link.uplink import Uplink
 from advisor.mavlink.wire.framing import Frame
 from advisor.scripts.next_order import end_order, next_order
+from tests.rows import row
 
 VEHICLE = (1, 1)
 
@@ -40,12 +41,32 @@ def test_an_order_is_four_parameters_with_the_counter_last() -> None:
     assert list(sent.values())[:3] == [2.0, 3.0, 0.3]
 
 
-def test_the_echo_confirms_and_ends_the_sending() -> None:
-    uplink = _ordered()
+NEXT, END = (2, 3.0, 0.3), end_order(3)
+
+
+@row(
+    "the echo confirms an input", NEXT, "NEXT {} reverse 3-2-1-1 0.30 s 3.0 deg",
+    "confirms: switch up: reverse 3-2-1-1, 0.3 s, 3 deg",
+)  # fmt: skip
+@row("a refused input is said", NEXT, "REFUSES {}: size 3.0 deg", "refuses the next input: size 3.0 deg")
+@row("the end of a multisine is confirmed", END, "ENOUGH {}", "ends input 3: its data are enough")
+@row(
+    "a refused end is said", END, "REFUSES {}: no multisine 3 to end",
+    "refuses the end of the input: no multisine 3 to end",
+)  # fmt: skip
+def test_an_answer_of_the_script_is_said_and_ends_the_sending(order, answer: str, said: str) -> None:
+    uplink = Uplink()
+    uplink.order(*order)
     counter = _sent(uplink, 10.0)["SCR_USER4"]
-    uplink.hear(_text(f"ADVISOR NEXT {counter:.0f} reverse 3-2-1-1 0.30 s 3.0 deg"), 10.5)
-    assert uplink.report() == ["the script confirms: switch up: reverse 3-2-1-1, 0.3 s, 3 deg"]
+    uplink.hear(_text(f"ADVISOR {answer.format(round(counter))}"), 10.5)
+    assert uplink.report() == [f"the script {said}"]
     assert _sent(uplink, 20.0) == {}
+
+
+def test_the_end_of_a_multisine_is_an_order_of_input_0() -> None:
+    uplink = Uplink()
+    uplink.order(*END)
+    assert list(_sent(uplink, 10.0).values())[:3] == [0.0, -3.0, 0.0]
 
 
 def test_an_order_without_an_echo_is_sent_again_with_another_counter_and_then_given_up() -> None:
@@ -71,24 +92,6 @@ def test_an_echo_of_an_earlier_order_confirms_nothing() -> None:
     assert _sent(uplink, 13.0) != {}
 
 
-def test_a_refusal_is_said_and_ends_the_sending() -> None:
-    uplink = _ordered()
-    counter = _sent(uplink, 10.0)["SCR_USER4"]
-    uplink.hear(_text(f"ADVISOR REFUSES {counter:.0f}: size 3.0 deg"), 10.5)
-    assert uplink.report() == ["the script refuses the next input: size 3.0 deg"]
-    assert _sent(uplink, 20.0) == {}
-
-
-def test_the_end_of_a_multisine_is_an_order_with_input_0_that_the_script_confirms() -> None:
-    uplink = Uplink()
-    uplink.order(*end_order(3))
-    sent = _sent(uplink, 10.0)
-    assert list(sent.values())[:3] == [0.0, -3.0, 0.0]
-    uplink.hear(_text(f"ADVISOR ENOUGH {sent['SCR_USER4']:.0f}"), 10.5)
-    assert uplink.report() == ["the script ends input 3: its data are enough"]
-    assert _sent(uplink, 20.0) == {}
-
-
 def test_a_next_input_without_an_echo_is_sent_again_after_the_end_of_the_present_one() -> None:
     uplink = _ordered()
     _sent(uplink, 10.0)
@@ -96,14 +99,6 @@ def test_a_next_input_without_an_echo_is_sent_again_after_the_end_of_the_present
     counter = _sent(uplink, 11.0)["SCR_USER4"]
     uplink.hear(_text(f"ADVISOR ENOUGH {counter:.0f}"), 11.5)
     assert list(_sent(uplink, 11.6).values())[:3] == [2.0, 3.0, 0.3]
-
-
-def test_a_refused_end_is_said() -> None:
-    uplink = Uplink()
-    uplink.order(*end_order(3))
-    counter = _sent(uplink, 10.0)["SCR_USER4"]
-    uplink.hear(_text(f"ADVISOR REFUSES {counter:.0f}: no multisine 3 to end"), 10.5)
-    assert uplink.report() == ["the script refuses the end of the input: no multisine 3 to end"]
 
 
 def test_a_silent_vehicle_is_sent_nothing() -> None:

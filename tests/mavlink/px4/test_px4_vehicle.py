@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from advisor.mavlink.px4.px4_vehicle import heartbeat
+from tests.rows import row
 
 FIXED_WING, QUADROTOR, VTOL = 1, 2, 20
 """MAV_TYPE of MAVLink."""
@@ -18,19 +19,14 @@ def kind(parameters=None, **status):
     return heartbeat(topics, parameters or {}, 0).fields["type"]
 
 
-def test_a_vehicle_on_rotors_is_a_multicopter_unless_it_is_a_vtol():
-    assert kind(vehicle_type=[ROTORS, ROTORS]) == QUADROTOR
-    assert kind(vehicle_type=[ROTORS, ROTORS], is_vtol=[1, 1]) == FIXED_WING
-    assert kind(vehicle_type=[WING, WING]) == FIXED_WING
-
-
-def test_a_vehicle_that_is_ever_carried_by_its_wing_has_an_elevator():
-    assert kind(vehicle_type=[ROTORS, WING]) == FIXED_WING
-
-
-def test_the_older_word_of_rotors_counts():
-    assert kind(is_rotary_wing=[1, 1]) == QUADROTOR
-    assert kind(is_rotary_wing=[0, 0]) == FIXED_WING
+@row("a vehicle on rotors is a multicopter", {"vehicle_type": [ROTORS, ROTORS]}, QUADROTOR)
+@row("a VTOL on rotors is no multicopter", {"vehicle_type": [ROTORS, ROTORS], "is_vtol": [1, 1]}, FIXED_WING)
+@row("a vehicle on its wing is no multicopter", {"vehicle_type": [WING, WING]}, FIXED_WING)
+@row("a vehicle once carried by its wing is no multicopter", {"vehicle_type": [ROTORS, WING]}, FIXED_WING)
+@row("the older word of rotors counts", {"is_rotary_wing": [1, 1]}, QUADROTOR)
+@row("the older word of no rotors counts", {"is_rotary_wing": [0, 0]}, FIXED_WING)
+def test_the_kind_of_a_vehicle_follows_from_its_status(status, found):
+    assert kind(**status) == found
 
 
 @pytest.mark.parametrize(("stated", "counts"), [(VTOL, True), (0, False), (256, False)])
