@@ -178,7 +178,7 @@ def _predicted(name_of_row: str, model: AxisEstimate, file: Path) -> Iterator[st
     segments = list(map(rolled, wanted)) if is_rolled([maneuver_of(s, 1) for s in wanted]) else wanted
     left, whole = np.zeros(2), np.zeros(2)
     for number, segment in enumerate(segments, 1):
-        fits = predicted(maneuver_of(segment, number), model, aircraft)
+        fits = predicted(LATERAL, maneuver_of(segment, number), model, aircraft)
         assert not isinstance(fits, NoEstimate)
         power = np.array([np.sum((fits[n].measured - np.mean(fits[n].measured)) ** 2) for n in ("p", "r")])
         lost = np.array([np.sum(fits[n].residual ** 2) for n in ("p", "r")])

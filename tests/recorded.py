@@ -30,6 +30,7 @@ from advisor.cli.axes import lateral_gap
 from advisor.doctor import as_flown
 from advisor.exports.models.jsbsim import run as jsbsim_run
 from advisor.flight.maneuvers.maneuver import Maneuver
+from advisor.oem.axis.estimator import JointSearch
 from advisor.oem.estimate import NoEstimate
 from advisor.simulators.linear import LinearSimulator
 from tests.flights import SHARED
@@ -114,11 +115,13 @@ def _fitted_once(
 def _estimated_once(function: Callable[..., Result]) -> Callable[..., Result]:
     """The function of manoeuvres and an aircraft, whose result is kept by every sample and number of both."""
 
-    def recalled(flown: Any, aircraft: Aircraft, search: object = None) -> Result:
+    def recalled(*asked: Any) -> Result:
+        search = asked[-1] if isinstance(asked[-1], JointSearch) or asked[-1] is None else None
+        *axis, flown, aircraft = asked if search is None and asked[-1] is not None else asked[:-1]
         if search is not None:
-            return function(flown, aircraft, search)
-        asked = tuple(flown) if isinstance(flown, Sequence) else flown
-        return _made_once((function.__qualname__, asked, aircraft), lambda: function(flown, aircraft))
+            return function(*axis, flown, aircraft, search)
+        key = tuple(flown) if isinstance(flown, Sequence) else flown
+        return _made_once((function.__qualname__, key, aircraft), lambda: function(*axis, flown, aircraft))
 
     return recalled
 

@@ -27,10 +27,11 @@ def estimate(*flown, percent=2.0, untold=None, fits=()):
     errors = Errors(covariance, np.zeros((1, 15)))
     modes, _ = modes_of(LATERAL, vector(JET), errors, Trim(130.0).around)
     return AxisEstimate(
-        axis=LATERAL, theta=vector(JET), covariance_cr=covariance, covariance=covariance,
+        theta=vector(JET), covariance_cr=covariance, covariance=covariance,
         common=0.0 * covariance, cost=1e-9, fits=fits, iterations=3, not_identifiable=untold or {},
         correlated=(), condition=1.0, airspeed_m_s=130.0,
         names=LATERAL.names.reported, nuisances={}, flown=flown, modes=modes,
+        of_still=tuple(term.name for term in LATERAL.shared if term.factor not in (*flown, *LATERAL.states)),
     )  # fmt: skip
 
 

@@ -39,7 +39,6 @@ class AxisEstimate(Estimate):
 
     COLOUR_IS_SHARED: ClassVar[bool] = False
 
-    axis: Axis
     common: FloatArray
     modes: Mapping[str, Quality]
     """Quantities of the modes by name, such as ``dutch_roll_omega``, rad/s."""
@@ -49,14 +48,15 @@ class AxisEstimate(Estimate):
     """Value and standard deviation of each nuisance parameter, by its name."""
     flown: tuple[str, ...]
     """Controls that the test moves."""
+    of_still: tuple[str, ...] = ()
+    """Names of the derivatives by a control that the test does not move."""
     scales_with_speed: bool = False
     """Whether the derivatives belong to a stated air speed and scale with the measured air speed."""
 
     @property
     def of_prior(self) -> tuple[str, ...]:
         """Names of the derivatives by a control that the test does not move."""
-        still = [name for name in self.axis.inputs if name not in self.flown]
-        return tuple(term.name for term in self.axis.shared if term.factor in still)
+        return self.of_still
 
 
 class Errors(NamedTuple):
@@ -193,8 +193,9 @@ def _reported(solution: Solution) -> AxisEstimate:
     trims = [problem.trim(m) for m in range(len(problem.records))]
     trim = {name: float(np.mean([each[name] for each in trims])) for name in trims[0]}
     modes, left_out = modes_of(axis, solution.theta, errors, {**trim, "airspeed": airspeed})
+    flown = tuple(name for name in axis.inputs if problem.flies(name))
+    still = {*axis.inputs} - {*flown}
     return AxisEstimate(
-        axis=axis,
         theta=solution.theta,
         covariance_cr=bound,
         covariance=covariance,
@@ -213,13 +214,18 @@ def _reported(solution: Solution) -> AxisEstimate:
         modes_left_out=left_out,
         nuisances={name: x for name, x in solution.nuisances.items() if name not in problem.terms},
         fixed=tuple(problem.fixed),
-        flown=tuple(name for name in axis.inputs if problem.flies(name)),
+        flown=flown,
+        of_still=tuple(term.name for term in axis.shared if term.factor in still),
         scales_with_speed=problem.reference_airspeed_m_s is not None,
     )
 
 
 def predicted(
-    maneuver: Maneuver, model: AxisEstimate, aircraft: Aircraft, theta: FloatArray | None = None
+    axis: Axis,
+    maneuver: Maneuver,
+    model: AxisEstimate,
+    aircraft: Aircraft,
+    theta: FloatArray | None = None,
 ) -> Mapping[str, ChannelFit] | NoEstimate:
     """Return measured and predicted values of a manoeuvre, by the output's name.
 
@@ -232,7 +238,6 @@ def predicted(
     theta
         Derivatives (s,) at the model's speed; None for the model's own derivatives.
     """
-    axis = model.axis
     problem = prepare(axis, [maneuver], aircraft)
     if isinstance(problem, NoEstimate):
         return problem

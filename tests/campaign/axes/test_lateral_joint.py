@@ -18,7 +18,7 @@ def joint(monkeypatch: pytest.MonkeyPatch) -> list[int]:
     """Number of manoeuvres of each joint estimate that is made; single ones are not counted."""
     made: list[int] = []
 
-    def estimated(maneuvers, *_):
+    def estimated(_, maneuvers, *__):
         if len(maneuvers) == 1:
             return estimate(maneuvers[0].span.kind.split()[0], percent=30.0)
         made.append(len(maneuvers))

@@ -135,7 +135,7 @@ def _ahead(given: SideControl, against: SideControl, side_control: SideControl) 
 
 def _gap(maneuver: Maneuver, model: AxisEstimate, aircraft: Aircraft, theta: FloatArray) -> float:
     """Return the mean gap over outputs: mean square error over that of the noise, minus 1, at least 0."""
-    fits = predicted(maneuver, model, aircraft, theta)
+    fits = predicted(LATERAL, maneuver, model, aircraft, theta)
     if isinstance(fits, NoEstimate):
         return 0.0
     # The noise of a prediction is its own error, and tells no gap.
