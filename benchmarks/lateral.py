@@ -26,7 +26,8 @@ from advisor.analysis.log_series import LogSeries
 from advisor.campaign.campaign import Campaign
 from advisor.campaign.state import LateralState
 from advisor.model.axes.lateral import LATERAL
-from advisor.oem.axis.estimator import AxisEstimate, predicted
+from advisor.oem.axis.estimate import AxisEstimate
+from advisor.oem.axis.estimator import predicted
 from advisor.oem.axis.problem import AxisProblem, AxisRecord
 from advisor.oem.axis.search import solve
 from advisor.oem.estimate import NoEstimate

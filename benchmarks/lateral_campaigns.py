@@ -19,7 +19,7 @@ from advisor.aircraft.controls import SideControl
 from advisor.campaign.axes.lateral_campaign import LateralCampaign
 from advisor.campaign.hand_decisions import ByHand
 from advisor.flight.maneuvers.maneuver import Maneuver
-from advisor.oem.axis.estimator import AxisEstimate
+from advisor.oem.axis.estimate import AxisEstimate
 from advisor.process.parts import Parts
 from benchmarks.lateral_gap import recordings, scenario_of
 from benchmarks.studies.forecast import Forecast, score

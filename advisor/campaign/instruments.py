@@ -7,7 +7,7 @@ from dataclasses import replace
 from advisor.aircraft.aircraft import Aircraft
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.flight.signals.instrument_finding import InstrumentFinding
-from advisor.oem.axis.estimator import AxisEstimate
+from advisor.oem.axis.estimate import AxisEstimate
 from advisor.oem.estimate import Estimate, NoEstimate
 from advisor.oem.findings import findings_of
 from advisor.words.digits import with_half

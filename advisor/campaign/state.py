@@ -9,8 +9,6 @@ from typing import Any, Generic, TypeVar
 
 from advisor.decision.arriving import Arriving
 from advisor.decision.crew_plan import CrewPlan, crew_plan
-from advisor.decision.envelope import shortest_response_s
-from advisor.decision.first_unit import natural_period
 from advisor.decision.verdict import FlightTestVerdict, ManeuverVerdict
 from advisor.flight.elevator.elevator_guess import Guess
 from advisor.flight.maneuvers.events import Activity
@@ -21,7 +19,7 @@ from advisor.flight.signals.power_on import Course
 from advisor.flight.signals.track import ChannelStatus
 from advisor.flight.stream.flights import FlightHeard
 from advisor.flight.vehicle.vehicle import Vehicle
-from advisor.oem.axis.estimator import AxisEstimate
+from advisor.oem.axis.estimate import AxisEstimate
 from advisor.oem.estimate import Estimate, NoEstimate
 from advisor.process.parts import FailedPart
 from advisor.words.axes import AXES, AxisName
@@ -232,6 +230,10 @@ class CampaignState:
     def is_recorded(self) -> bool:
         """Whether the manoeuvre in flight may end: its input is over, and its free response is long enough to
         be judged."""
+        # Screens import this module at once, but the natural period needs the libraries that estimate.
+        from advisor.decision.envelope import shortest_response_s
+        from advisor.decision.first_unit import natural_period
+
         if self.flying is None or self.tested_sideways is not None:
             return False
         span, period_s = self.flying.span, natural_period(self.flying, self.model)

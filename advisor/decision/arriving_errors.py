@@ -17,7 +17,7 @@ from advisor.decision.axes.lateral_stop import JUDGED
 from advisor.decision.axes.linear_motion import PITCH, SIDE, Motion, sensitivities
 from advisor.decision.envelope import moved_controls
 from advisor.flight.maneuvers.maneuver import Maneuver
-from advisor.oem.axis.estimator import AxisEstimate
+from advisor.oem.axis.estimate import AxisEstimate
 from advisor.oem.estimate import Estimate
 from advisor.process.arrays import FloatArray
 

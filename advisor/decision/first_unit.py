@@ -15,7 +15,7 @@ from advisor.decision.response import Response, explained_share
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.model.axes.lateral import Trim, modes_of, state_matrix
 from advisor.model.short_period import ShortPeriod
-from advisor.oem.axis.estimator import AxisEstimate
+from advisor.oem.axis.estimate import AxisEstimate
 from advisor.oem.estimate import Estimate, NoEstimate
 from advisor.words.quantiles import NORMAL_95
 

@@ -14,7 +14,8 @@ from advisor.aircraft.sensors import Alpha, Beta
 from advisor.aircraft.standard_gravity import GRAVITY_M_S2
 from advisor.library import estimate
 from advisor.model.axes.lateral import LATERAL
-from advisor.oem.axis.estimator import AxisEstimate, estimate_axis
+from advisor.oem.axis.estimate import AxisEstimate
+from advisor.oem.axis.estimator import estimate_axis
 from advisor.oem.estimate import Estimate, NoEstimate
 from advisor.process.arrays import FloatArray
 from benchmarks.public.linear import FACTORS, FREE, REFERENCE_M_S, ROWS

@@ -25,7 +25,7 @@ def compared(monkeypatch):
         seen.specification = specification
         return SimpleNamespace(close=close)
 
-    def compare(maneuvers, aircraft, prior, logged, as_logged):
+    def compare(_, maneuvers, aircraft, prior, logged, as_logged):
         seen.maneuvers, seen.aircraft, seen.logged = maneuvers, aircraft, logged
         seen.as_logged = as_logged
         return Diagnosis(axis="lateral", verdict="untested", sentence="", gap=Gap(), model={})

@@ -11,7 +11,8 @@ from advisor.decision.verdict import ManeuverVerdict, Reason
 from advisor.flight.maneuvers.maneuver import Maneuver, Span
 from advisor.flight.signals.record import Channel
 from advisor.model.axes.lateral import LATERAL, Trim
-from advisor.oem.axis.estimator import AxisEstimate, Errors, modes_of
+from advisor.oem.axis.estimate import AxisEstimate
+from advisor.oem.axis.estimator import Errors, modes_of
 from advisor.oem.estimate import ChannelFit
 from tests.oem.axis.builders import JET, vector
 

@@ -19,7 +19,7 @@ from advisor.flight.maneuvers.maneuver import Maneuver, Span
 from advisor.flight.signals.instrument_finding import InstrumentFinding
 from advisor.flight.signals.messages import Columns
 from advisor.mavlink.logs.logs import open_log
-from advisor.oem.axis.estimator import AxisEstimate
+from advisor.oem.axis.estimate import AxisEstimate
 from tests.campaign import side_builders
 from tests.heard import hear
 

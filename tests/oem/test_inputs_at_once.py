@@ -12,7 +12,8 @@ from advisor.decision.axes.influences import carries_coupling
 from advisor.flight.maneuvers.maneuver import InputKind, Maneuver
 from advisor.flight.maneuvers.sines import between_samples, command_of
 from advisor.model.axes.lateral import LATERAL
-from advisor.oem.axis.estimator import AxisEstimate, estimate_axis
+from advisor.oem.axis.estimate import AxisEstimate
+from advisor.oem.axis.estimator import estimate_axis
 from advisor.oem.estimate import Estimate
 from advisor.oem.estimator import estimate
 from advisor.oem.known_instruments import with_found

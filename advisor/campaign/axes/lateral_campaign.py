@@ -17,7 +17,8 @@ from advisor.decision.history import CandidateManeuver
 from advisor.decision.verdict import FlightTestVerdict
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.model.axes.lateral import LATERAL
-from advisor.oem.axis.estimator import AxisEstimate, JointSearch, estimate_axis
+from advisor.oem.axis.estimate import AxisEstimate
+from advisor.oem.axis.estimator import JointSearch, estimate_axis
 from advisor.process.parts import Parts
 from advisor.words.problems import Problem
 

@@ -15,7 +15,7 @@ from advisor.decision.axes.linear_motion import PITCH, SIDE, LinearMotion
 from advisor.decision.omitted import Influence, objections_to
 from advisor.decision.verdict import Reason
 from advisor.flight.maneuvers.maneuver import Maneuver
-from advisor.oem.axis.estimator import AxisEstimate
+from advisor.oem.axis.estimate import AxisEstimate
 from advisor.oem.estimate import Estimate
 from advisor.oem.instruments import COUPLING
 from advisor.process.arrays import FloatArray

@@ -26,7 +26,7 @@ from advisor.decision.verdict import (
     RuleProgress,
 )
 from advisor.model.axes.lateral import CONTROLS, LATERAL
-from advisor.oem.axis.estimator import AxisEstimate
+from advisor.oem.axis.estimate import AxisEstimate
 from advisor.words.quantiles import NORMAL_95
 from advisor.words.quantities import symbol
 

@@ -31,7 +31,7 @@ from advisor.decision.response import Response
 from advisor.decision.verdict import Reason
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.flight.signals.robust import rms
-from advisor.oem.axis.estimator import AxisEstimate
+from advisor.oem.axis.estimate import AxisEstimate
 from advisor.oem.estimate import Estimate, NoEstimate
 from advisor.oem.findings import findings_of
 from advisor.words.axes import AxisName

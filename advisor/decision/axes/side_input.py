@@ -19,7 +19,7 @@ from advisor.decision.inputs import StepInput
 from advisor.decision.verdict import INFORMATION_LIMIT_PERCENT, NextInput, Reason
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.model.axes.lateral import LATERAL
-from advisor.oem.axis.estimator import AxisEstimate
+from advisor.oem.axis.estimate import AxisEstimate
 from advisor.oem.estimate import Estimate, NoEstimate
 
 

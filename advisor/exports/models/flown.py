@@ -22,7 +22,7 @@ from advisor.exports.models.improvement import (
 from advisor.flight.instruments.atmosphere import AirData, air_flown
 from advisor.gap.result import Diagnosis, Value
 from advisor.model.axes.lateral import LATERAL, Trim
-from advisor.oem.axis.estimator import AxisEstimate
+from advisor.oem.axis.estimate import AxisEstimate
 from advisor.oem.axis.search import WITHOUT_FORCE
 from advisor.process.arrays import FloatArray
 from advisor.process.atomic_file import write_atomically

@@ -16,7 +16,8 @@ from advisor.gap.inference.prior import FIELD, FieldPrior
 from advisor.gap.result import ComparedDerivative, Diagnosis, Gap, GapVerdict, Value
 from advisor.gap.verdict.text import answers_of
 from advisor.model.axis import Axis
-from advisor.oem.axis.estimator import AxisEstimate, estimate_axis
+from advisor.oem.axis.estimate import AxisEstimate
+from advisor.oem.axis.estimator import estimate_axis
 from advisor.oem.estimate import NoEstimate
 from advisor.words.certainty import as_sure
 

@@ -4,21 +4,22 @@ The modes of the motion have 95 % intervals by the delta method, from the slopes
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
-from typing import ClassVar, NamedTuple
+from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.model.axis import Around, Axis
+from advisor.oem.axis.estimate import AxisEstimate
 from advisor.oem.axis.motion import AxisMotion, with_hidden
 from advisor.oem.axis.parameter import parameters_of
 from advisor.oem.axis.prepare import prepare
 from advisor.oem.axis.search import Near, Searched, not_identifiable, search
 from advisor.oem.axis.start import starting_point
 from advisor.oem.descent import descended
-from advisor.oem.estimate import ChannelFit, Estimate, NoEstimate
+from advisor.oem.estimate import ChannelFit, NoEstimate
 from advisor.oem.estimator import channel_fits
 from advisor.oem.flying_qualities import Quality
 from advisor.oem.gained import told, without_term, without_terms
@@ -31,32 +32,6 @@ from advisor.process.arrays import FloatArray
 
 HELD = 1e-6
 """Numerical: standard deviation of the given derivatives in the refit of a prediction, SI."""
-
-
-@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
-class AxisEstimate(Estimate):
-    """Derivatives and modes of an axis from one manoeuvre, or from several manoeuvres together."""
-
-    COLOUR_IS_SHARED: ClassVar[bool] = False
-
-    common: FloatArray
-    modes: Mapping[str, Quality]
-    """Quantities of the modes by name, such as ``dutch_roll_omega``, rad/s."""
-    modes_left_out: Mapping[str, str] = field(default_factory=dict)
-    """Reason why a mode has no values, by its name."""
-    nuisances: Mapping[str, tuple[float, float]]
-    """Value and standard deviation of each nuisance parameter, by its name."""
-    flown: tuple[str, ...]
-    """Controls that the test moves."""
-    of_still: tuple[str, ...] = ()
-    """Names of the derivatives by a control that the test does not move."""
-    scales_with_speed: bool = False
-    """Whether the derivatives belong to a stated air speed and scale with the measured air speed."""
-
-    @property
-    def of_prior(self) -> tuple[str, ...]:
-        """Names of the derivatives by a control that the test does not move."""
-        return self.of_still
 
 
 class Errors(NamedTuple):

@@ -8,7 +8,7 @@ from advisor.aircraft.aircraft import Aircraft
 from advisor.campaign.state import JudgedManeuver, LateralState
 from advisor.decision.axes.lateral_requirements import GROUPS, SOURCE
 from advisor.model.mil_f_8785c import CATEGORIES, MANNED
-from advisor.oem.axis.estimator import AxisEstimate
+from advisor.oem.axis.estimate import AxisEstimate
 from advisor.oem.estimate import Estimate
 from advisor.report.axis_document import concluded, fitted, flown, with_intervals
 from advisor.report.qualities import levels_document, levels_of, mode_facts, tests_document, tests_of

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from math import isfinite, nan
 
 from advisor.campaign.state import CampaignState, JudgedManeuver, LateralState
-from advisor.oem.axis.estimator import AxisEstimate
+from advisor.oem.axis.estimate import AxisEstimate
 from advisor.oem.estimate import Estimate, TermEstimate
 from advisor.words.digits import decimals_for, maneuvers_said, signed, with_half
 from advisor.words.quantiles import NORMAL_95

@@ -59,7 +59,7 @@ def test_numbers_with_which_the_gap_grows_on_the_proof_are_taken_back(monkeypatc
     plain = Diagnosis(axis="lateral", verdict="parameters", sentence="", gap=Gap(), model={})
     asked = []
     monkeypatch.setattr(side_proof, "estimate_axis", lambda *_: model)
-    monkeypatch.setattr(side_proof, "compare_axis", lambda _, one, __: asked.append(one) or plain)
+    monkeypatch.setattr(side_proof, "compare_axis", lambda _, __, one, ___: asked.append(one) or plain)
     improved = replace(AIRCRAFT, model=dict.fromkeys(SIDE_PARAMETERS, 1.0), simulator="linear")
     monkeypatch.setattr(side_proof, "with_derivatives", lambda *_: improved)
     monkeypatch.setattr(side_proof, "_gap", lambda _, __, ___, theta: after if np.all(theta == 1.0) else 2.0)

@@ -274,7 +274,7 @@ def test_a_search_without_an_end_stops_and_is_reported(monkeypatch):
     heights = iter(range(0, 10000, 100))
     _, (failed,) = searched(monkeypatch, lambda fit, share: -next(heights))
     assert failed.part == flight_of_side.SEARCH
-    assert f"{flight_of_side.SEARCHES} searches" in str(failed.problem)
+    assert "4 searches" in str(failed.problem)
 
 
 @pytest.mark.parametrize(("right", "wrong", "fitted"), [(5.0, 0.0, False), (0.0, 5.0, True)])

@@ -11,7 +11,7 @@ from scipy.integrate import solve_ivp
 
 from advisor.aircraft.standard_gravity import GRAVITY_M_S2
 from advisor.model.axes.lateral import LATERAL
-from advisor.oem.axis.parameter import LARGEST_MOVE_S, LONGEST_LAG_S, Parameter
+from advisor.oem.axis.parameter import Parameter
 from advisor.oem.axis.problem import AxisProblem, AxisRecord
 from advisor.oem.extra import Prior
 from advisor.oem.rows import Signal
@@ -130,8 +130,8 @@ def both_inputs(
 def number(of: str, entry: str, prior: Prior, each_s: float = 1.0) -> Parameter:
     """Return one number of servos, clocks or sensors, which moves by at most 0.03 s, or by as much as moves
     the outputs like it."""
-    bounds = (0.0, LONGEST_LAG_S) if entry == "lag_s" else (-np.inf, np.inf)
-    return Parameter((of, entry), prior, LARGEST_MOVE_S * each_s, bounds)
+    bounds = (0.0, 0.4) if entry == "lag_s" else (-np.inf, np.inf)
+    return Parameter((of, entry), prior, 0.03 * each_s, bounds)
 
 
 def vector(theta: dict[str, float]) -> FloatArray:

@@ -31,7 +31,8 @@ from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.gap.axis.comparison import compare_axis
 from advisor.gap.inference.prior import FIELD, FieldPrior
 from advisor.model.axes.lateral import LATERAL
-from advisor.oem.axis.estimator import AxisEstimate, estimate_axis, predicted
+from advisor.oem.axis.estimate import AxisEstimate
+from advisor.oem.axis.estimator import estimate_axis, predicted
 from advisor.oem.estimate import NoEstimate
 from advisor.process.arrays import FloatArray
 from advisor.simulators.flying import Progress
