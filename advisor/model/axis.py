@@ -146,7 +146,7 @@ class Axis:
     """State that the cosine multiplies."""
     needed: tuple[str, ...] = ()
     """Outputs that every record has."""
-    known: tuple[str, ...] = ("airspeed",)
+    given: tuple[str, ...] = ("airspeed",)
     """Signals of a record that the known factors need."""
     floor: Mapping[str, float] = field(default_factory=dict)
     """Least standard deviation of each output, SI."""

@@ -4,8 +4,8 @@ import ast
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
-from benchmarks.gap_size import ROOM
 from benchmarks.pages.constants import DECIDES, DESCRIBES, KINDS, Row, rows_in
+from benchmarks.sizes import ROOM
 
 _HEAD = """# The decisions of the gap diagnosis
 

@@ -43,7 +43,7 @@ class Jet:
             self.derivatives, **moved, seconds=8.5, airspeed=condition.airspeed_m_s, initial=(0.0,) * 4
         )
         t = record.outputs["p"].t
-        level = {name: record.known[name].at(t) for name in ("alpha", "q", "theta")}
+        level = {name: record.given[name].at(t) for name in ("alpha", "q", "theta")}
         side = {name: signal.y for name, signal in record.outputs.items()}
         side["p"] = side["p"] + self.bump * np.exp(-(((t - 5.0) / 0.2) ** 2))
         speed = np.full(len(t), condition.airspeed_m_s)

@@ -208,12 +208,14 @@ class SideFlight:
         """Number of manoeuvres."""
         return len(self.case.flown)
 
-    def in_moving_air(self, stage: Stage[SideModel]) -> Stage[SideModel]:
+    def in_moving_air(self, stage: Stage[SideModel]) -> Stage[SideModel] | None:
         """Return the likely explanations refitted with side gusts, which disturb all outputs together.
 
         Coloured instruments and gusts are compared by their likelihoods. The residuals are those of the
         likeliest explanation, because an effect without its model resembles a coloured instrument.
         """
+        if not self.case.axis.hidden:
+            return None
         each = float(np.log(max(len(self.table), 1)))
         nats_of = [stage.plain.evidence.right, *(m.evidence.either - each for m in stage.effects)]
         least = np.logaddexp.reduce(nats_of) + np.log(LIKELY)

@@ -105,12 +105,12 @@ def case_of(
         if x.entry != "lag_s" or x.place in setting
     ]
     free = lay_out(problem).free
-    told = tuple(name for k, name in enumerate(names) if name in aircraft.model and k in free)
+    determined = tuple(name for k, name in enumerate(names) if name in aircraft.model and k in free)
     given = np.array([aircraft.model.get(n, v) for n, v in zip(names, theta, strict=True)])
     begin = Point(theta, starting_point(problem)[1], setting)
     arm_is_stated = any(stated_arm_m(name, aircraft) is not None for name in axis.arms)
     flown = Flown(problem, throttle, arm_is_stated)
-    return Case(flown, given, told, tuple(natural), begin, tuple(m.number for m in maneuvers), fixed)
+    return Case(flown, given, determined, tuple(natural), begin, tuple(m.number for m in maneuvers), fixed)
 
 
 def free_with(case: Case, effect: SideEffect, plain: Fit) -> tuple[Parameter, ...]:

@@ -30,7 +30,7 @@ def residual_of(fit: Fit, flown: Flown, share: float) -> Residual:
     motions = [_motion(fit, m, peaks) for m in range(fit.assembly.maneuvers)]
     powers = [(_moving(fit, k, motions), (NATURAL * peaks[k]) ** 2) for k in channels]
     (power, error, freedom), unit = max(powers, key=lambda it: it[0][0] / it[1])
-    by_air = next(probe.explained for probe in probes if probe.block == AIR)
+    by_air = next((probe.explained for probe in probes if probe.block == AIR), 0.0)
     most = probes[0].explained
     size, beside = (float(np.sqrt(part * power / unit)) for part in (most, max(most - by_air, 0.0)))
     named = [probe for probe in probes if probe.block != AIR]

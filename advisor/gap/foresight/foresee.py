@@ -54,15 +54,15 @@ def unseen_effects(
     }
     out = [Unseen(effect, need.because, need.add) for effect, need in needed.items()]
     signatures = _signatures(problem, fitted, variants, noise)
-    for one in signatures:
-        twins = _twins(one, signatures)
-        if not one.is_visible:
-            out.append(Unseen(one.effect, *hidden_from(one.effect, flights)))
-        elif twins and one.effect not in present:
+    for signature in signatures:
+        twins = _twins(signature, signatures)
+        if not signature.is_visible:
+            out.append(Unseen(signature.effect, *hidden_from(signature.effect, flights)))
+        elif twins and signature.effect not in present:
             alike = " or ".join(map(spelled, twins))
-            ways = [way for twin in twins if (way := way_to_distinguish(one.effect, twin))]
+            ways = [way for twin in twins if (way := way_to_distinguish(signature.effect, twin))]
             would_need = "; ".join(dict.fromkeys(ways)) or OTHERWISE
-            out.append(Unseen(one.effect, f"when small it looks like {alike}", would_need))
+            out.append(Unseen(signature.effect, f"when small it looks like {alike}", would_need))
     if flights.alpha_is_derived:
         out = [unseen for unseen in out if not EFFECTS[unseen.effect].of_one_imu]
         hidden = [name for name, effect in EFFECTS.items() if effect.of_one_imu and name not in present]

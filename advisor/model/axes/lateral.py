@@ -193,7 +193,7 @@ LATERAL = Axis(
     bank="bank",
     yaw="r",
     needed=("p", "r", "bank"),
-    known=("airspeed", "alpha", "theta", "q"),
+    given=("airspeed", "alpha", "theta", "q"),
     # Gyros of 0.007 deg/s/√Hz have 5e-4 rad/s at 20 Hz, and the model's errors are as large.
     floor={"p": 5e-4, "r": 5e-4, "bank": 5e-4, "a_y": 0.01, "beta": 5e-4},
     letters=_STATES,

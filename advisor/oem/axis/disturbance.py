@@ -62,7 +62,8 @@ def blocks_of(fit: Linear) -> Iterator[str]:
     axis = fit.problem.axis
     yield from filter(fit.problem.flies, axis.inputs)
     yield from axis.equations
-    yield AIR
+    if axis.hidden:  # a gust adds its angle to that state
+        yield AIR
     there = {axis.outputs[k] for k in np.unique(fit.assembly.channel)}
     yield from (block for block, output in axis.sensors.items() if output in there)
 

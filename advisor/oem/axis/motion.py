@@ -43,11 +43,12 @@ class AxisMotion:
     def linear(self, problem: AxisProblem, shared: FloatArray, m: int, /) -> Linear:
         """Return the linear motion of manoeuvre ``m`` at its mean air speed and trim."""
         axis, linear = self.axis, problem.linear(shared, m)
-        hidden = axis.states.index(axis.hidden)
-        # A vane sees the gust itself, and forces see it through the motion's equations.
-        gust = linear.aerodynamic[:, hidden]
-        air_seen = linear.seen_rates @ gust
-        air_seen[axis.outputs.index(axis.hidden)] += 1.0
+        gust, air_seen = np.zeros(len(axis.states)), np.zeros(len(axis.outputs))
+        if axis.hidden:
+            # A vane sees the gust itself, and forces see it through the motion's equations.
+            gust = linear.aerodynamic[:, axis.states.index(axis.hidden)]
+            air_seen = linear.seen_rates @ gust
+            air_seen[axis.outputs.index(axis.hidden)] += 1.0
         forced = np.array([axis.states.index(state) for state in axis.letters.values()])
         return Linear(linear.matrix, linear.seen, gust, air_seen, forced)
 

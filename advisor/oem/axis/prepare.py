@@ -60,7 +60,7 @@ def prepare(axis: Axis, maneuvers: Sequence[Maneuver], aircraft: Aircraft) -> Ax
                 },
                 before={name: signal_of(channel) for name, channel in m.before.items()},
                 outputs={name: signal_of(m.channels[name]) for name in outputs},
-                known={name: _known(name, m, speed, aircraft, left_out) for name in axis.known},
+                given={name: _given(name, m, speed, aircraft, left_out) for name in axis.given},
             )
             for m, speed in zip(maneuvers, flown, strict=True)
         ),
@@ -124,7 +124,7 @@ def _moves(maneuver: Maneuver, name: str) -> bool:
     return has(maneuver.channels, name) and float(np.ptp(maneuver.channels[name].y)) > 0.0
 
 
-def _known(name: str, maneuver: Maneuver, speed: Signal, aircraft: Aircraft, left_out: str) -> Signal:
+def _given(name: str, maneuver: Maneuver, speed: Signal, aircraft: Aircraft, left_out: str) -> Signal:
     """Return a known signal of a manoeuvre, with the air speed as prepared."""
     if name == "airspeed":
         return speed

@@ -41,7 +41,7 @@ class AxisRecord:
     """Commands of the inputs, rad; an unrecorded input is taken as constant."""
     outputs: Mapping[str, Signal]
     """Measured outputs by name, which always include those that the axis needs."""
-    known: Mapping[str, Signal]
+    given: Mapping[str, Signal]
     """Known signals that the table of the axis names: ``airspeed``, and for example ``alpha``."""
     signals: Mapping[str, Signal] = field(default_factory=dict)
     """Further signals that added terms need, by their names in expressions."""
@@ -55,7 +55,7 @@ class AxisRecord:
     @property
     def airspeed(self) -> Signal:
         """Read air speed, m/s."""
-        return self.known["airspeed"]
+        return self.given["airspeed"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -104,8 +104,8 @@ class AxisProblem:
         """Return the signals of a record by their names in expressions, without the controls."""
         spoken = self.axis.spoken.items()
         given = {name: record.outputs[output] for name, output in spoken if output in record.outputs}
-        known = {"V" if name == "airspeed" else name: signal for name, signal in record.known.items()}
-        return {**given, **known, **record.signals}
+        context = {"V" if name == "airspeed" else name: signal for name, signal in record.given.items()}
+        return {**given, **context, **record.signals}
 
     def servo(self, name: str) -> Servo:
         """Return the servo of an input, with the delay of all commands added."""
@@ -132,7 +132,7 @@ class AxisProblem:
 
     def trim(self, m: int) -> dict[str | Place, float]:
         """Return the mean of each known signal of record ``m``, and the values of the instruments."""
-        means = {name: float(np.mean(signal.y)) for name, signal in self.records[m].known.items()}
+        means = {name: float(np.mean(signal.y)) for name, signal in self.records[m].given.items()}
         values: dict[str | Place, float] = {place: self.at(place) for place in self.axis.open}
         values.update(means)
         return values | {"q": 0.0}
@@ -157,7 +157,7 @@ class Surroundings(dict[str | Place, FloatArray | float]):
         self._problem, self._record, self._t, self._steps = problem, record, t, steps
 
     def __missing__(self, name: str) -> FloatArray:
-        read = self._record.known[name].at(self._t)
+        read = self._record.given[name].at(self._t)
         read = padded(read) if self._steps else read
         excess = self._problem.at(("airspeed", "excess"))
         value = (1.0 + excess) * read if name == "airspeed" else read + self._problem.at((name, "excess_rad"))

@@ -100,7 +100,7 @@ def _condition(maneuver: Maneuver, record: AxisRecord, aircraft: Aircraft) -> Co
         before = signal.y[signal.t < maneuver.span.start_s]
         return float(np.mean(before)) if len(before) else float(signal.y[0])
 
-    path = mean(record.known["theta"]) - mean(record.known["alpha"])
+    path = mean(record.given["theta"]) - mean(record.given["alpha"])
     return Condition(mean(record.airspeed), 0.0, path, aircraft.reference.mass_kg)
 
 
@@ -139,7 +139,7 @@ def _as_record(replay: Replay, inputs: Inputs, t: FloatArray) -> AxisRecord:
     return AxisRecord(
         inputs={name: Signal(t, inputs.others[name]) for name in LATERAL.inputs if name in inputs.others},
         outputs={name: read(series) for name, series in motion.items() if series is not None},
-        known={
+        given={
             "airspeed": read(replay.airspeed_m_s),
             "alpha": read(replay.alpha),
             "theta": read(replay.theta),

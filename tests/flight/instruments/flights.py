@@ -65,7 +65,7 @@ def doublets(vane=True):
 
 
 def channels_of(record):
-    known = record.known
+    known = record.given
     t = record.outputs["p"].t
     told = dict(record.outputs) | {n: Signal(t, s.at(t)) for n, s in known.items()}
     return {

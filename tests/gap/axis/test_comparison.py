@@ -37,7 +37,7 @@ def maneuvers():
 
 
 def numbered(number, record):
-    known = {name: signal.at(T) for name, signal in record.known.items()}
+    known = {name: signal.at(T) for name, signal in record.given.items()}
     told = {name: signal.y for name, signal in (record.outputs | record.inputs).items()} | known
     channels = {name: Channel(name, T, y, "HIGHRES_IMU", "measured") for name, y in told.items()}
     return Maneuver(number, 0, Span(0.0, 1.0, 4.0, 8.0, "other", (), "quiet"), channels)

@@ -102,7 +102,7 @@ def test_without_noise_an_air_speed_that_reads_too_little_is_found_and_moves_no_
     records = []
     for record in both_inputs(JET, measured=("p", "r", "bank", "a_y")).records:
         true = record.airspeed
-        records.append(replace(record, known={**record.known, "airspeed": Signal(true.t, true.y / 1.04)}))
+        records.append(replace(record, given={**record.given, "airspeed": Signal(true.t, true.y / 1.04)}))
     excess = number("airspeed", "excess", WIDE)
     problem = AxisProblem(LATERAL, tuple(records))
     fit = descended(AxisMotion(LATERAL), problem, (excess,), KNOWN_NOTHING, starting_point(problem))
@@ -113,8 +113,8 @@ def test_without_noise_an_air_speed_that_reads_too_little_is_found_and_moves_no_
 def test_without_noise_an_angle_of_attack_that_reads_too_much_is_found_and_moves_no_derivative():
     records = []
     for record in both_inputs(JET, measured=("p", "r", "bank", "a_y")).records:
-        true = record.known["alpha"]
-        records.append(replace(record, known={**record.known, "alpha": Signal(true.t, true.y + 0.01)}))
+        true = record.given["alpha"]
+        records.append(replace(record, given={**record.given, "alpha": Signal(true.t, true.y + 0.01)}))
     excess = number("alpha", "excess_rad", WIDE)
     problem = AxisProblem(LATERAL, tuple(records))
     fit = descended(AxisMotion(LATERAL), problem, (excess,), KNOWN_NOTHING, starting_point(problem))
