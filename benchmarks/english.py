@@ -26,7 +26,7 @@ ALLOWED = {
     "advisor/gap": 4,
     "advisor/words": 1,
     "advisor/model": 1,
-    "advisor/oem": 7,
+    "advisor/oem": 5,
     "advisor/bundled": 1,
     "docs": 7,
 }

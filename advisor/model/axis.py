@@ -132,8 +132,8 @@ class Axis:
     biases: tuple[str, ...] = ()
     """Outputs with a separate constant error in each manoeuvre."""
     factors: Mapping[str, Callable[[Around], FloatArray | float]] = field(default_factory=dict)
-    """Known factors by name besides the factor one: functions of the surroundings, in the middle of a step
-    for a rate and at the event for an output."""
+    """Known factors by name, besides the factor one, as functions of the surroundings. A factor of a rate is
+    taken in the middle of a step, and a factor of an output at the event."""
     turning: tuple[Known, ...] = ()
     """Known terms of the rates."""
     seen: tuple[Read, ...] = ()
@@ -189,7 +189,7 @@ class Axis:
     natural_size: Callable[[FloatArray], Mapping[str, float]] = lambda _: {}
     """Function that returns the typical size of each derivative on an aircraft with given derivatives."""
     prior: Callable[[FloatArray, Sequence[str], bool, float], Prior] | None = None
-    """Function that returns the priors for derivatives near given ones, from the inputs that are flown,
+    """Function that returns the priors for derivatives near given ones. It takes the inputs that are flown,
     whether an output shows the force, and the air speed, m/s."""
     weak: Mapping[str, float] = field(default_factory=dict)
     """Derivatives with a prior of their own, and its standard deviation."""

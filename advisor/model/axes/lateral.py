@@ -74,7 +74,7 @@ def priors(theta: FloatArray, flown: Sequence[str], tells_force: bool, airspeed_
 
     Y_p and Y_r are a few per cent on every aircraft. The derivatives of a control that hardly moves have the
     size of those of the other control. Without a measured side force or sideslip, gravity and air speed give
-    the size of Y_β in level flight, and strip theory gives N_p and L_r (Etkin & Reid, *Dynamics of Flight*,
+    the size of Y_β in level flight. Strip theory then gives N_p and L_r (Etkin & Reid, *Dynamics of Flight*,
     Ch. 5).
     """
     mean = dict.fromkeys(SIDE_PARAMETERS, 0.0)

@@ -108,8 +108,10 @@ def outputs_of(laid: AxisAssembly, shared: FloatArray, local: FloatArray) -> Flo
 def column_of(
     place: Place, value: float, laid: AxisAssembly, local: FloatArray, simulated: Simulated
 ) -> FloatArray | None:
-    """Return the derivative of the outputs by the value at a place, shape (N,); None if the pass that
-    simulates the outputs does not give it."""
+    """Return the derivative of the outputs by the value at a place, shape (N,).
+
+    None if the pass that simulates the outputs does not give this derivative.
+    """
     axis, (y, g, motion), grid = laid.axis, simulated, laid.grid
     of, entry = place
     if place in axis.open:

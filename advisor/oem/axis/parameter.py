@@ -2,9 +2,8 @@
 
 The command takes effect up to half an interval and a filter's delay before or after its stamps. Outputs may
 be late relative to the rates, and every delay is relative to the rates. A servo without a stated lag in the
-aircraft file has an unknown lag; an ignored lag of 0.08 s costs a quarter of L_p and L_δa. A sideslip vane
-ahead of the centre of gravity reads β + (x/V)·r, so that a vane treated as at the centre of gravity shifts
-N_r by -N_β·x/V. The true air speed differs from the air speed that the sensor reads. Each unknown property
+aircraft file has an unknown lag, because an ignored lag of 0.08 s costs a quarter of L_p and L_δa. A sideslip
+vane ahead of the centre of gravity reads β + (x/V)·r. Without its arm N_r would be wrong by -N_β·x/V. The true air speed differs from the air speed that the sensor reads. Each unknown property
 of an instrument is an additional parameter, whose error is part of every interval.
 """
 
@@ -63,7 +62,7 @@ class Parameter:
 
     @property
     def entry(self) -> str:
-        """What the number is of its instrument: ``lag_s``, ``delay_s``, ``arm_m``."""
+        """Property of the instrument: ``lag_s``, ``delay_s``, ``arm_m``."""
         return self.place[1]
 
     @property

@@ -67,15 +67,15 @@ class AxisProblem:
     reference_airspeed_m_s: float | None = None
     """Air speed of the derivatives, m/s; None if the derivatives do not scale with speed."""
     values: Mapping[Place, float] = field(default_factory=dict)
-    """Values of instruments by their place, 0 for a missing one: lags and delays of servos, delays of outputs
-    relative to the rates, arms of sensors, excesses of true over read signals, coefficients of terms."""
+    """Lags and delays of servos, delays of outputs relative to the rates, arms of sensors, excesses of true
+    over read signals, and coefficients of terms, by their place. A missing value is zero."""
     fixed: Mapping[str, float] = field(default_factory=dict)
     """Derivatives held at a value, by name."""
     means: Mapping[str, float] = field(default_factory=dict)
     """Value from which a signal counts in the terms, by the signal's name."""
 
     def at(self, place: Place) -> float:
-        """Return the value at a place; zero, as of an ideal instrument, for a missing one."""
+        """Return the value at a place; zero, which is an ideal instrument, for a missing one."""
         return self.values.get(place, 0.0)
 
     def having(self, place: Place, value: float) -> "AxisProblem":
@@ -138,8 +138,11 @@ class AxisProblem:
         return values | {"q": 0.0}
 
     def linear(self, theta: FloatArray, m: int, true: bool = True) -> Linear:
-        """Return the linear motion of manoeuvre ``m`` about its trim, with derivatives ``theta`` (s,) at the
-        reference speed; ``true`` corrects the read air speed by its excess."""
+        """Return the linear motion of manoeuvre ``m`` about its trim.
+
+        ``theta`` (s,) are the derivatives at the reference speed. ``true`` corrects the read air speed by its
+        excess.
+        """
         trim = self.trim(m)
         speed = trim["airspeed"]
         ratio = speed / (self.reference_airspeed_m_s or speed)

@@ -1,7 +1,7 @@
 """Start of the search along an axis: a linear regression of the integrated equations.
 
-The known terms of the rates, and the specific force where it is recorded, give a state that no vane measures
-without its level and drift. For the sideslip this is
+The known terms of the rates and the recorded specific force give a state that no vane measures, but neither
+its level nor its drift. For the sideslip this is
 
     β̇ = a_y/V + (g/V)·cos θ·sin φ + sin α·p - cos α·r,
 
