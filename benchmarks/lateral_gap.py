@@ -22,7 +22,7 @@ from advisor.aircraft.reference import SIDE_PARAMETERS
 from advisor.flight.maneuvers.maneuver import Maneuver, Span
 from advisor.flight.signals.record import Channel
 from advisor.gap.axis.comparison import compare_axis
-from advisor.gap.axis.diagnosis import diagnose_side
+from advisor.gap.axis.diagnosis import diagnose_axis
 from advisor.gap.axis.models import case_of
 from advisor.gap.result import Diagnosis
 from advisor.model.axes.lateral import LATERAL
@@ -111,7 +111,7 @@ def diagnosis_of(flight: Sequence[Maneuver]) -> Diagnosis | None:
     """Return the diagnosis of manoeuvres with the aircraft's true derivatives."""
     case = case_of(LATERAL, flight, AIRCRAFT, np.array([UAV[name] for name in SIDE_PARAMETERS]))
     assert not isinstance(case, NoEstimate)
-    return diagnose_side(case)
+    return diagnose_axis(case)
 
 
 def diagnosed_in_jsbsim(seed: int, effects: Effects) -> Diagnosis | None:

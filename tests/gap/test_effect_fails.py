@@ -6,9 +6,10 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from advisor.gap.axis.flight import SideFlight
+from advisor.gap.axis.flight import AxisFlight
 from advisor.gap.inference import pitch
 from advisor.gap.inference.pitch import PitchFlight
+from advisor.model.axes.lateral import LATERAL
 from advisor.process.parts import FailedPart
 from advisor.report.gap_document import gap_document
 from tests.gap.axis.test_diagnosis import FOUND
@@ -32,9 +33,9 @@ def test_an_effect_of_roll_and_yaw_whose_fit_fails_is_left_out() -> None:
     def fit(*_):
         raise SINGULAR
 
-    case = SimpleNamespace(fit=fit, natural=(), begin=SimpleNamespace(setting={}))
+    case = SimpleNamespace(fit=fit, natural=(), begin=SimpleNamespace(setting={}), axis=LATERAL)
     effect = SimpleNamespace(places=(), columns=None, std=(), variant=SimpleNamespace(steps=(), bounds=()))
-    flight = SideFlight(case, None, [])
+    flight = AxisFlight(case, None, [])
     start = SimpleNamespace(effect=effect, point=None, name="aileron_actuator_lag")
     plain = SimpleNamespace(free=())
     assert flight._added(start, plain, 0.3, plain, 1.0) is None

@@ -1,1 +1,1 @@
-"""Parts of the gap diagnosis for roll and yaw: effects, fits, gusts and evidence."""
+"""Diagnosis of the gap along any axis, which callers hand in: no module of this room imports a table."""

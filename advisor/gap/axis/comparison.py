@@ -10,7 +10,7 @@ from dataclasses import replace
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.flight.maneuvers.maneuver import Maneuver
-from advisor.gap.axis.diagnosis import diagnose_side
+from advisor.gap.axis.diagnosis import diagnose_axis
 from advisor.gap.axis.models import case_of
 from advisor.gap.inference.prior import FIELD, FieldPrior
 from advisor.gap.result import ComparedDerivative, Diagnosis, Gap, GapVerdict, Value
@@ -40,7 +40,7 @@ def compare_axis(
     if isinstance(model, NoEstimate):
         return model
     case = case_of(axis, maneuvers, aircraft, model.theta)
-    made = None if isinstance(case, NoEstimate) else diagnose_side(case, prior)
+    made = None if isinstance(case, NoEstimate) else diagnose_axis(case, prior)
     diagnosis = made or Diagnosis(
         axis=axis.key, verdict="untested", sentence="", gap=Gap(), model={},
         maneuvers=tuple(m.number for m in maneuvers),

@@ -7,12 +7,12 @@ from typing import NamedTuple
 import numpy as np
 
 from advisor.gap.alternative import Alternative, AlternativeEvidence, Weighed
-from advisor.gap.axis.effects import block_of, side_effects, unseen
+from advisor.gap.axis.effects import axis_effects, block_of, unseen
 from advisor.gap.axis.evidence import colour_share, information_of, posterior_at, squares_of
 from advisor.gap.axis.fit import Fit
-from advisor.gap.axis.flight import SideFlight, SideModel
+from advisor.gap.axis.flight import AxisFlight, AxisModel
 from advisor.gap.axis.gusts import coloured_likelihood
-from advisor.gap.axis.laws import lacking, side_laws
+from advisor.gap.axis.laws import axis_laws, lacking
 from advisor.gap.axis.measure import measured, sums
 from advisor.gap.axis.models import Case, base_of, free_near
 from advisor.gap.fitting.prior import ERROR_IF_RIGHT, ERROR_IF_WRONG
@@ -31,7 +31,7 @@ from advisor.model.axis import Axis
 from advisor.process.arrays import FloatArray
 
 
-def diagnose_side(case: Case, prior: FieldPrior = FIELD) -> Diagnosis | None:
+def diagnose_axis(case: Case, prior: FieldPrior = FIELD) -> Diagnosis | None:
     """Return the probabilities of all explanations; None if no plain fit exists.
 
     If one effect is the likeliest explanation, a second effect is sought in addition to the first.
@@ -47,7 +47,7 @@ def diagnose_side(case: Case, prior: FieldPrior = FIELD) -> Diagnosis | None:
     )
     if plain is None or as_given is None:
         return None
-    flight = SideFlight(case, plain, list(side_effects(case.flown)), list(side_laws(case, plain)))
+    flight = AxisFlight(case, plain, list(axis_effects(case.flown)), list(axis_laws(case, plain)))
     decision = decided(
         flight, first_stage(flight), prior, lambda rows: [_named_air(case.axis, row) for row in rows]
     )
@@ -135,7 +135,7 @@ def _first(case: Case) -> Fit | None:
     return max(fits, key=prior.height, default=None)
 
 
-def _held_out(case: Case, model: SideModel, heat: float) -> FloatArray:
+def _held_out(case: Case, model: AxisModel, heat: float) -> FloatArray:
     """Return the sums of squared errors (m, outputs) of a model on manoeuvres held out one by one.
 
     A manoeuvre that alone moves a control is not held out, because no other manoeuvre shows the control's
@@ -147,7 +147,7 @@ def _held_out(case: Case, model: SideModel, heat: float) -> FloatArray:
     return squares
 
 
-def _capped(case: Case, decided: Decided[SideModel], as_given: Fit) -> Decided[SideModel]:
+def _capped(case: Case, decided: Decided[AxisModel], as_given: Fit) -> Decided[AxisModel]:
     """Return the posterior in which "no gap" is unlikely in the presence of a visible gap.
 
     Without a manoeuvre that can be held out, the posterior is unchanged.
@@ -168,8 +168,8 @@ def air_of(axis: Axis) -> Alternative:
     return Alternative("air", axis.gust[1], "air")
 
 
-def _named_air(axis: Axis, row: Row[SideModel]) -> Row[SideModel]:
-    """Return the row with side gusts as its answer, if the gusts alone exceed natural side gusts."""
+def _named_air(axis: Axis, row: Row[AxisModel]) -> Row[AxisModel]:
+    """Return the row with gusts as its answer, if the gusts alone exceed natural gusts."""
     gusts = row.explanation.gusts
     blown = row.alternative == NONE and gusts is not None and gusts.air.angle > NATURAL_GUST_ANGLE
     return relabelled(row, air_of(axis)) if blown else row
@@ -185,13 +185,13 @@ class _Told(NamedTuple):
     """Shape (s + k,)."""
 
     @classmethod
-    def of(cls, case: Case, model: SideModel, share: float, fit: Fit | None = None) -> "_Told":
+    def of(cls, case: Case, model: AxisModel, share: float, fit: Fit | None = None) -> "_Told":
         """Return the posterior of a model at its fit, or at another ``fit``."""
         fit = fit or model.fit
         return cls(fit, *posterior_at(fit, case.prior_of(model.tolerance, fit.free), share))
 
 
-def _causes(case: Case, decided: Decided[SideModel], final: _Told, as_given: Fit) -> Iterator[Cause]:
+def _causes(case: Case, decided: Decided[AxisModel], final: _Told, as_given: Fit) -> Iterator[Cause]:
     """Yield the effects of the model, then the alternatives to the first effect."""
     posterior, together, added = decided.posteriors[0], 1.0, decided.chosen[1:]
     for stage, model in zip(decided.posteriors, added, strict=False):
@@ -208,7 +208,7 @@ def _causes(case: Case, decided: Decided[SideModel], final: _Told, as_given: Fit
         yield _cause(case, other, _Told.of(case, other, decided.heat**-0.5), probability, present=False)
 
 
-def _cause(case: Case, tried: SideModel, final: _Told, probability: float, present: bool) -> Cause:
+def _cause(case: Case, tried: AxisModel, final: _Told, probability: float, present: bool) -> Cause:
     """Return an effect as a cause, with its sizes from a posterior that includes the effect."""
     effect = tried.effect
     assert effect is not None
@@ -228,8 +228,8 @@ def _cause(case: Case, tried: SideModel, final: _Told, probability: float, prese
     return replace(cause, sentence=effect.said(what(cause)))
 
 
-def _air(case: Case, model: SideModel, probability: float, is_found: bool, as_given: Fit) -> Cause:
-    """Return side gusts as a cause of the gap."""
+def _air(case: Case, model: AxisModel, probability: float, is_found: bool, as_given: Fit) -> Cause:
+    """Return gusts as a cause of the gap."""
     assert model.gusts is not None
     speed = float(np.mean([np.mean(record.airspeed.y) for record in case.flown.problem.records]))
     size = Value(model.gusts.air.angle * speed, model.gusts.angle_std * speed)
@@ -241,7 +241,7 @@ def _air(case: Case, model: SideModel, probability: float, is_found: bool, as_gi
     )  # fmt: skip
 
 
-def _waterfall(case: Case, decided: Decided[SideModel]) -> tuple[tuple[str, float], ...]:
+def _waterfall(case: Case, decided: Decided[AxisModel]) -> tuple[tuple[str, float], ...]:
     """Return the gap that remains after the addition of each effect, if a manoeuvre can be held out."""
     each = [(m.name, _held_out(case, m, decided.heat)) for m in decided.chosen[1:]]
     left = ((name, measured(decided.chosen[-1].fit, case.numbers, m, m)[0].after) for name, m in each)

@@ -32,7 +32,7 @@ from advisor.words.quantities import channel
 
 
 @dataclass(frozen=True, slots=True)
-class SideEffect:
+class AxisEffect:
     """One effect at one control or output of an axis."""
 
     of: str
@@ -64,7 +64,7 @@ class SideEffect:
         return self.named.replace(" ", "_")
 
     def said(self, sentence: str) -> str:
-        """Return the pitch axis' sentence with the words of roll and yaw."""
+        """Return the pitch axis' sentence with the words of this axis."""
         for old, new in self.words.items():
             if old in sentence:
                 return sentence.replace(old, new)
@@ -101,7 +101,7 @@ def block_of(axis: Axis, of: str) -> str:
     return {**blocks, "throttle": by_state.get(turned, ""), "command": "input"}.get(of, of)
 
 
-def side_effects(flown: Flown) -> Iterator[SideEffect]:
+def axis_effects(flown: Flown) -> Iterator[AxisEffect]:
     """Yield every effect that the records of a flight can show."""
     axis, problem = flown.axis, flown.problem
     controls = list(filter(problem.flies, axis.inputs))
@@ -122,20 +122,20 @@ def side_effects(flown: Flown) -> Iterator[SideEffect]:
         if block:
             yield _sized(of, replace(SCALE, block=block), ((of, "scale"),), {"pitch rate": spoken})
     if axis.force in measured:
-        yield SideEffect(axis.force, ARM, ((axis.force, "arm_m"),), (_ARM_STD_M,))
+        yield AxisEffect(axis.force, ARM, ((axis.force, "arm_m"),), (_ARM_STD_M,))
     if axis.vane in measured and flown.arm_is_stated:
         vane = replace(ARM, effect="alpha_vane_offset", block="alpha_sensor")
-        yield SideEffect(axis.vane, vane, ((axis.vane, "arm_m"),), (_ARM_STD_M,))
+        yield AxisEffect(axis.vane, vane, ((axis.vane, "arm_m"),), (_ARM_STD_M,))
     if axis.propeller[0] and _throttle_moves(flown):
         yield _propeller(*axis.propeller)
 
 
 def _sized(
     of: str, variant: Variant, places: tuple[Place, ...], words: Mapping[str, str], at_control: bool = False
-) -> SideEffect:
+) -> AxisEffect:
     """Return an effect with the prior widths of the pitch axis, whose servos and streams are the same."""
     std = tuple(width_of(variant.effect, name) for name in variant.names)
-    return SideEffect(of, variant, places, std, words, at_control)
+    return AxisEffect(of, variant, places, std, words, at_control)
 
 
 def unseen(flown: Flown) -> Iterator[Unseen]:
@@ -166,9 +166,9 @@ def _outputs_said(flown: Flown) -> str:
     return " or ".join([", ".join(named[:-1]), named[-1]])
 
 
-def _propeller(control: str, said: str, sentence: str) -> SideEffect:
+def _propeller(control: str, said: str, sentence: str) -> AxisEffect:
     """Return the propeller's moment at full throttle as the equivalent deflection of a control."""
     entry = f"{control}_rad"
     torque = replace(ARM, effect="thrust_moment", block="moment_equation", names=(entry,), steps=(2e-4,))
     words = dict.fromkeys(without_sizes(THRUST.said, ""), sentence)
-    return SideEffect(THROTTLE, torque, ((THROTTLE, entry),), (0.05,), {**words, "thrust moment": said})
+    return AxisEffect(THROTTLE, torque, ((THROTTLE, entry),), (0.05,), {**words, "thrust moment": said})

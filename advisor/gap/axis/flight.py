@@ -6,10 +6,10 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from advisor.gap.alternative import Alternative
-from advisor.gap.axis.effects import SideEffect, block_of
+from advisor.gap.axis.effects import AxisEffect, block_of
 from advisor.gap.axis.evidence import colour_share, gained, information_of, squares_of, step_of
 from advisor.gap.axis.fit import Fit, Known, moved_by
-from advisor.gap.axis.gusts import Gusts, coloured_likelihood, side_gusts
+from advisor.gap.axis.gusts import Gusts, coloured_likelihood, gusts_of
 from advisor.gap.axis.measure import sums
 from advisor.gap.axis.models import Case, base_of, free_near, free_with
 from advisor.gap.axis.residual import residual_of
@@ -38,20 +38,20 @@ from advisor.process.parts import Parts
 
 _TOLERANCES = (ERROR_IF_RIGHT, ERROR_IF_WRONG)
 LIKELY = 0.01
-"""Probability above which an effect is also fitted with side gusts, and above which its sizes are stated."""
+"""Probability above which an effect is also fitted with gusts, and above which its sizes are stated."""
 SEARCHES = 4
 """Numerical: largest number of searches for the plain model, each from the likeliest effect's derivatives."""
-SEARCH = "roll and yaw, search of the derivatives alone"
+SEARCH = "search of the derivatives alone"
 """Name of the part that fails when the last search still finds a likelier plain model."""
 _STEPS = 2
 """Numerical: number of Gauss-Newton steps from the optimum in white noise to the optimum in gusts."""
 
 
 @dataclass(frozen=True, kw_only=True)
-class SideModel(Explanation):
-    """One explanation of a lateral flight with its fit."""
+class AxisModel(Explanation):
+    """One explanation of a flight with its fit."""
 
-    effect: SideEffect | None
+    effect: AxisEffect | None
     """Effect that the model adds to the derivatives; None for derivatives alone."""
     fit: Fit
     beyond: float
@@ -61,7 +61,7 @@ class SideModel(Explanation):
     starts: Starts | None = None
     """Linear starts of all further effects; None except in the plain model."""
     gusts: Gusts | None = None
-    """Side gusts of the model; None in still air."""
+    """Gusts of the model; None in still air."""
 
     @property
     def tolerance(self) -> float:
@@ -70,13 +70,13 @@ class SideModel(Explanation):
 
 
 @dataclass(frozen=True)
-class SideFlight:
-    """A flight in roll and yaw, with its fit without effects."""
+class AxisFlight:
+    """A flight along an axis, with its fit without effects."""
 
     case: Case
     plain: Fit
-    table: Sequence[SideEffect]
-    laws: Sequence[SideEffect] = ()
+    table: Sequence[AxisEffect]
+    laws: Sequence[AxisEffect] = ()
     """Laws of a surface or of a curve that have no name in the catalogue."""
     parts: Parts = field(default_factory=Parts)
 
@@ -87,10 +87,10 @@ class SideFlight:
 
     @property
     def is_stated(self) -> bool:
-        """Whether the aircraft file states any lateral derivative."""
+        """Whether the aircraft file states any derivative of the axis."""
         return bool(self.case.stated)
 
-    def explained(self, base: SideModel | None, most: int) -> tuple[float, list[SideModel]]:
+    def explained(self, base: AxisModel | None, most: int) -> tuple[float, list[AxisModel]]:
         """Return the temperature of the likelihood, and a model with each likely effect in addition."""
         begin = self.plain
         if base is not None:
@@ -107,14 +107,14 @@ class SideFlight:
             # The plain model had ended in a local minimum, and so had all models that began there.
             plain = again
         else:
-            self.parts.ended(SEARCH, f"no end after {SEARCHES} searches")
+            self.parts.ended(f"{self.case.axis.name}, {SEARCH}", f"no end after {SEARCHES} searches")
         plain = everyone[0].fit
         # What the likeliest model still lacks is an error of every model.
         share = colour_share(max(everyone, key=lambda s: s.likelihood).fit, lacking=True)
         weighed = (replace(self._model(s.effect, s.fit, plain, share), starts=s.starts) for s in everyone)
         return share**-2, list(weighed)
 
-    def _each_about(self, plain: Fit, share: float, base: SideModel | None, most: int) -> list[SideModel]:
+    def _each_about(self, plain: Fit, share: float, base: AxisModel | None, most: int) -> list[AxisModel]:
         """Return the plain model, and the models with each likely effect that begin there."""
         table = _beside(base, self.table)
         starts = Starts(self.case, plain, table, share=share)
@@ -129,7 +129,7 @@ class SideFlight:
         models = (self._added(s, at, tolerance, plain, share) for s, at, tolerance in chosen)
         return [replace(self._model(None, plain, plain, share), starts=starts), *filter(None, models)]
 
-    def _at_the_file(self, plain: Fit, share: float, base: SideModel | None) -> Fit | None:
+    def _at_the_file(self, plain: Fit, share: float, base: AxisModel | None) -> Fit | None:
         """Return the fit about the file's derivatives, which a wrong effect in the flight does not
         distort."""
         if base is not None:
@@ -137,7 +137,7 @@ class SideFlight:
         start = self.case.begin._replace(theta=self.case.theta)
         return self.case.fit(start, self.case.natural, ERROR_IF_RIGHT, share)
 
-    def _searched_again(self, everyone: Sequence[SideModel], share: float) -> Fit | None:
+    def _searched_again(self, everyone: Sequence[AxisModel], share: float) -> Fit | None:
         """Return the plain model from a search that starts at the likeliest effect's derivatives; None if it
         is no better optimum.
         """
@@ -151,16 +151,16 @@ class SideFlight:
         better = fit is not None and prior.height(fit) > prior.height(plain.fit) + SAME_OPTIMUM
         return fit if better else None
 
-    def _added(self, start: Start, at: Fit, tolerance: float, plain: Fit, share: float) -> SideModel | None:
+    def _added(self, start: Start, at: Fit, tolerance: float, plain: Fit, share: float) -> AxisModel | None:
         """Return the model with an effect; None if the model diverges or a fault ends the fit."""
 
-        def work() -> SideModel | None:
+        def work() -> AxisModel | None:
             fit = self.case.fit(start.point, free_with(self.case, start.effect, at), tolerance, share)
             return None if fit is None else self._model(start.effect, fit, plain, share)
 
-        return self.parts.kept(f"roll and yaw, effect {start.name}", work)
+        return self.parts.kept(f"{self.case.axis.name}, effect {start.name}", work)
 
-    def at_the_files(self, model: SideModel, plain: SideModel, heat: float) -> SideModel | None:
+    def at_the_files(self, model: AxisModel, plain: AxisModel, heat: float) -> AxisModel | None:
         """Return an explanation refitted about the file's derivatives; None without such a fit.
 
         If the file's derivatives are likelier already, the first fit suffices for the quadratic expansion.
@@ -172,15 +172,15 @@ class SideFlight:
             return None
         return replace(self._model(model.effect, made, plain.fit, share), starts=model.starts)
 
-    def apart(self, model: SideModel, other: SideModel) -> float:
+    def apart(self, model: AxisModel, other: AxisModel) -> float:
         """Return the largest difference between two models' outputs, as a share of the outputs' peaks."""
         return change_of(model.fit, other.fit)
 
-    def residual(self, model: SideModel, heat: float) -> Residual:
+    def residual(self, model: AxisModel, heat: float) -> Residual:
         """Return the disturbance that explains the residual of a model best."""
         return residual_of(model.fit, self.case.flown, heat**-0.5)
 
-    def pairs(self, stage: Stage[SideModel], leads: Sequence[SideModel]) -> Pairs:
+    def pairs(self, stage: Stage[AxisModel], leads: Sequence[AxisModel]) -> Pairs:
         """Yield the price of each pair of effects and both names, if the second effect may be a cause as
         well.
 
@@ -195,7 +195,7 @@ class SideFlight:
                 if price < starts[lead.name].price - 2.0 * np.log(len(self.table)):
                     yield price, lead.name, other.name
 
-    def natural_nats(self, lead: SideModel, pair: SideModel) -> float:
+    def natural_nats(self, lead: AxisModel, pair: AxisModel) -> float:
         """Return the log prior gain of the lead's size in a pair, if that size is natural to every
         aircraft."""
         effect = lead.effect
@@ -208,8 +208,8 @@ class SideFlight:
         """Number of manoeuvres."""
         return len(self.case.flown)
 
-    def in_moving_air(self, stage: Stage[SideModel]) -> Stage[SideModel] | None:
-        """Return the likely explanations refitted with side gusts, which disturb all outputs together.
+    def in_moving_air(self, stage: Stage[AxisModel]) -> Stage[AxisModel] | None:
+        """Return the likely explanations refitted with gusts, which disturb all outputs together.
 
         Coloured instruments and gusts are compared by their likelihoods. The residuals are those of the
         likeliest explanation, because an effect without its model resembles a coloured instrument.
@@ -224,7 +224,7 @@ class SideFlight:
         lead = int(np.argmax([m.evidence.either for m in still]))
         fit = still[lead].fit
         courses = courses_of(fit.linear(self.case.flown))
-        air = side_gusts(fit, courses, self._wide(fit))
+        air = gusts_of(fit, courses, self._wide(fit))
         blown = within_model_error(self, [self._blown(m, courses, air) for m in still], 0.0)
         gain = air.likelihood - coloured_likelihood(fit)
         over = still[lead].evidence.either + gain - blown[lead].evidence.either
@@ -234,14 +234,14 @@ class SideFlight:
     def _wide(self, fit: Fit) -> Known:
         return self.case.prior_of(ERROR_IF_WRONG, fit.free)
 
-    def _blown(self, model: SideModel, courses: Sequence[Course], air: Gusts) -> SideModel:
-        """Return an explanation with side gusts in addition, at its optimum in these gusts.
+    def _blown(self, model: AxisModel, courses: Sequence[Course], air: Gusts) -> AxisModel:
+        """Return an explanation with gusts in addition, at its optimum in these gusts.
 
         A fit in white noise has absorbed part of the gusts in the derivatives, and lies far from the optimum
         in gusts.
         """
         wide = self._wide(model.fit)
-        gusts = side_gusts(model.fit, courses, wide, air)
+        gusts = gusts_of(model.fit, courses, wide, air)
         for _ in range(_STEPS):
             change = gusts.change(wide, model.fit)
             fits = (moved_by(self.case.flown, model.fit, share * change) for share in (1.0, 0.25))
@@ -258,7 +258,7 @@ class SideFlight:
         return replace(blown.more(model.beyond), model_error=0.0)
 
     def _weighed(
-        self, fit: Fit, effect: SideEffect | None, likelihood: float, matrix: FloatArray, gradient: FloatArray
+        self, fit: Fit, effect: AxisEffect | None, likelihood: float, matrix: FloatArray, gradient: FloatArray
     ) -> Iterator[Evidence]:
         """Yield the evidence of a fit, then the evidence with the effect at the small size natural to every
         aircraft."""
@@ -266,7 +266,7 @@ class SideFlight:
             priors = (self.case.prior_of(tolerance, free).prior(fit.values) for tolerance in _TOLERANCES)
             yield marginal(likelihood, matrix, gradient, *priors)
 
-    def _model(self, effect: SideEffect | None, fit: Fit, plain: Fit, share: float) -> SideModel:
+    def _model(self, effect: AxisEffect | None, fit: Fit, plain: Fit, share: float) -> AxisModel:
         """Return a model with its evidence, which a loss on held-out manoeuvres may reduce."""
         information, likelihood = information_of(fit, share), share**2 * fit.likelihood
         matrix, gradient = (np.sum(part, axis=0) for part in information)
@@ -274,7 +274,7 @@ class SideFlight:
         # A search that ends early, as at a bound, leaves a step to the optimum, which the evidence has taken.
         step = step_of(fit, information, self._wide(fit))
         likelihood += float(gradient @ step - 0.5 * step @ matrix @ step)
-        model = SideModel(
+        model = AxisModel(
             alternative=None, effect=effect, fit=fit, evidence=evidence, natural=natural,
             likelihood=likelihood, beyond=0.0, gain=Value(0.0, 0.0), change=change_of(plain, fit),
         )  # fmt: skip
@@ -300,13 +300,13 @@ class SideFlight:
         )  # fmt: skip
 
 
-def _beside(base: SideModel | None, table: Sequence[SideEffect]) -> list[SideEffect]:
+def _beside(base: AxisModel | None, table: Sequence[AxisEffect]) -> list[AxisEffect]:
     """Return the effects that share no entry with the effect of a model."""
     taken = set(base.effect.places) if base is not None and base.effect is not None else set()
     return [effect for effect in table if not taken & set(effect.places)]
 
 
-def _narrowed(free: Sequence[Parameter], effect: SideEffect | None) -> list[Parameter]:
+def _narrowed(free: Sequence[Parameter], effect: AxisEffect | None) -> list[Parameter]:
     """Return the free parameters, with the effect's prior narrowed to the size natural to every aircraft."""
     shares = {} if effect is None else dict(zip(effect.places, natural_shares(effect.variant), strict=True))
     return [replace(f, prior=replace(f.prior, std=shares.get(f.place, 1.0) * f.prior.std)) for f in free]

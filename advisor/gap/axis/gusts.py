@@ -1,4 +1,4 @@
-"""Side gusts in the residuals of a fit, distinguished from coloured noise of the instruments.
+"""Gusts in the residuals of a fit, distinguished from coloured noise of the instruments.
 
 The likelihood of the residuals is that of the estimates' errors (``oem.axis.gusts``).
 """
@@ -49,7 +49,7 @@ class Gusts:
         return replace(self, likelihood=likelihood, matrix=inner[1:, 1:], gradient=inner[1:, 0])
 
 
-def side_gusts(fit: Fit, courses: Sequence[Course], values_prior: Known, near: Gusts | None = None) -> Gusts:
+def gusts_of(fit: Fit, courses: Sequence[Course], values_prior: Known, near: Gusts | None = None) -> Gusts:
     """Return the likeliest white noise and gusts in the residuals of a fit.
 
     Derivatives and effect parameters are integrated out, because a white-noise fit has absorbed part of the

@@ -9,7 +9,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from advisor.gap.axis.effects import SideEffect, block_of
+from advisor.gap.axis.effects import AxisEffect, block_of
 from advisor.gap.axis.fit import Fit
 from advisor.gap.axis.models import Case
 from advisor.gap.inference.sizes import BENT, of_range
@@ -30,7 +30,7 @@ _LAG_AND_DAMPING = replace(
 """Second-order servo: parameters of lag and damping, and their entries in the simulator."""
 
 
-def side_laws(case: Case, fit: Fit) -> Iterator[SideEffect]:
+def axis_laws(case: Case, fit: Fit) -> Iterator[AxisEffect]:
     """Yield every law without a name that the records of a flight can show."""
     axis, problem = case.axis, case.flown.problem
     for of in filter(problem.flies, axis.inputs):
@@ -41,7 +41,7 @@ def side_laws(case: Case, fit: Fit) -> Iterator[SideEffect]:
         for law in (*stops(SURFACE_STOP, of, STOPS, np.zeros(1), moved), sticking(most), _LAG_AND_DAMPING):
             law = replace(law, block=of)
             places = tuple((of, entry) for entry in law.entries or law.names)
-            yield SideEffect(
+            yield AxisEffect(
                 of, law, places, of_range(law), {law.effect: f"{of} {law.effect}"}, at_control=True
             )
     motions = [_motion(fit, m) for m in range(len(case.flown))]
@@ -75,7 +75,7 @@ def _formula_names(axis: Axis) -> Mapping[str, str]:
 
 def _curves(
     case: Case, fit: Fit, motions: Sequence[Mapping[str, FloatArray]], block: str, slopes: Mapping[str, float]
-) -> Iterator[SideEffect]:
+) -> Iterator[AxisEffect]:
     """Yield the nonlinear curves of a block, from the linear terms ``slopes``."""
     most = {of: max(float(np.max(np.abs(motion[of]))) for motion in motions) + 1e-12 for of in slopes}
     parts = []
@@ -88,7 +88,7 @@ def _curves(
         name, std = f"{block} curve of {of}", BENT * slope * most[of]
         places = (name, "square"), (name, "cube")
         forms, at_control = columns[:, 2 * k : 2 * k + 2], block in case.axis.inputs
-        yield SideEffect(block, _CURVE, places, (std, std), {"curve": name}, at_control, forms)
+        yield AxisEffect(block, _CURVE, places, (std, std), {"curve": name}, at_control, forms)
 
 
 def _motion(fit: Fit, m: int) -> Mapping[str, FloatArray]:

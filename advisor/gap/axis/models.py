@@ -7,7 +7,7 @@ import numpy as np
 
 from advisor.aircraft.aircraft import Aircraft, Estimation
 from advisor.flight.maneuvers.maneuver import Maneuver
-from advisor.gap.axis.effects import SideEffect
+from advisor.gap.axis.effects import AxisEffect
 from advisor.gap.axis.fit import Fit, Known, Point, fitted
 from advisor.gap.axis.setting import Flown
 from advisor.gap.fitting.prior import ERROR_IF_WRONG
@@ -113,7 +113,7 @@ def case_of(
     return Case(flown, given, determined, tuple(natural), begin, tuple(m.number for m in maneuvers), fixed)
 
 
-def free_with(case: Case, effect: SideEffect, plain: Fit) -> tuple[Parameter, ...]:
+def free_with(case: Case, effect: AxisEffect, plain: Fit) -> tuple[Parameter, ...]:
     """Return the free parameters of a model with an effect, which replaces a nuisance parameter at its
     place."""
     variant = effect.variant
@@ -142,7 +142,7 @@ def free_near(case: Case, plain: Fit) -> tuple[Parameter, ...]:
     )
 
 
-def base_of(case: Case, effect: SideEffect) -> FloatArray:
+def base_of(case: Case, effect: AxisEffect) -> FloatArray:
     """Return the values that the simulator has at an effect's places."""
     setting = case.begin.setting
     return np.array([setting[place][0] if place in setting else 0.0 for place in effect.places])

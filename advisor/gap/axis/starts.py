@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from advisor.gap.axis.effects import SideEffect
+from advisor.gap.axis.effects import AxisEffect
 from advisor.gap.axis.fit import Fit, Point, outputs
 from advisor.gap.axis.models import Case, base_of
 from advisor.gap.axis.setting import Flown, Setting, deflection, moved_to
@@ -57,7 +57,7 @@ SECANT = (0.25, 2.0)
 class Start(NamedTuple):
     """Starting value of an effect's fit."""
 
-    effect: SideEffect
+    effect: AxisEffect
     cost: float
     """-2 log likelihood over the temperature at the start, after a linear refit of all other parameters."""
     point: Point
@@ -84,7 +84,7 @@ class Starts:
         self,
         case: Case,
         plain: Fit,
-        table: Sequence[SideEffect],
+        table: Sequence[AxisEffect],
         tolerance: float = ERROR_IF_WRONG,
         share: float = 1.0,
     ) -> None:
@@ -109,7 +109,7 @@ class Starts:
         count = len(start.effect.places) + len(other.effect.places)
         return self._cost + left - start.saved - other.saved + 2.0 * count
 
-    def _best(self, effect: SideEffect) -> Start:
+    def _best(self, effect: AxisEffect) -> Start:
         """Return the starting value of an effect with the least residual.
 
         An effect that replaces a nuisance parameter starts at that parameter's value and saves the prior's
@@ -130,7 +130,7 @@ class Starts:
         cost = self._cost + float(self._begin @ self._begin) - saved
         return Start(effect, cost, plain.point, np.zeros(len(self._begin)), saved)
 
-    def _tangent(self, effect: SideEffect) -> Start:
+    def _tangent(self, effect: AxisEffect) -> Start:
         """Return the starting value of an effect from the derivative of the outputs.
 
         If one reading is late, the clocks of all other channels may be late too. A common delay of all clocks
@@ -141,7 +141,7 @@ class Starts:
         moved = outputs(self._case.flown, point._replace(setting=setting), self._plain.begun)
         return self._linear(effect, (moved - self._plain.fitted)[:, None] / step)
 
-    def _linear(self, effect: SideEffect, columns: FloatArray) -> Start:
+    def _linear(self, effect: AxisEffect, columns: FloatArray) -> Start:
         """Return the best start of an effect whose outputs are linear in its parameters."""
         ways = np.column_stack([self._without(column * self._weight) for column in columns.T])
         prior = np.array(effect.std) ** -2.0
@@ -152,7 +152,7 @@ class Starts:
         setting = moved_to(point.setting, effect.places, base_of(self._case, effect) + values)
         return Start(effect, cost, point._replace(setting=setting), way)
 
-    def _each(self, effect: SideEffect) -> Iterator[Start]:
+    def _each(self, effect: AxisEffect) -> Iterator[Start]:
         """Yield every starting value of an effect, each with its cost. The outputs are taken as linear in an
         effect's size up to the starting value."""
         case, point = self._case, self._plain.point

@@ -1,7 +1,7 @@
 """Gusts in the residuals of an axis, and what they add to the errors of an estimate.
 
-A gust adds its angle to the sideslip that fin, wing and vane meet. Side force, roll and yaw thus change
-together, and the Dutch roll answers. The gust's angle is linear between knots, with an exponential
+A gust adds its angle to the incidence that wing, fin and vane meet. Force and moments thus change together,
+and the aircraft answers. The gust's angle is linear between knots, with an exponential
 correlation, as in Dryden's turbulence across the flight path. Noise of an instrument, however coloured,
 enters its own output alone. The likelihoods of the residuals distinguish both.
 """

@@ -2,9 +2,10 @@
 
 The command takes effect up to half an interval and a filter's delay before or after its stamps. Outputs may
 be late relative to the rates, and every delay is relative to the rates. A servo without a stated lag in the
-aircraft file has an unknown lag, because an ignored lag of 0.08 s costs a quarter of L_p and L_δa. A sideslip
-vane ahead of the centre of gravity reads β + (x/V)·r. Without its arm N_r would be wrong by -N_β·x/V. The true air speed differs from the air speed that the sensor reads. Each unknown property
-of an instrument is an additional parameter, whose error is part of every interval.
+aircraft file has an unknown lag, because an ignored lag of 0.08 s costs a quarter of L_p and L_δa. A
+sideslip vane ahead of the centre of gravity reads β + (x/V)·r. Without its arm N_r would be wrong by
+-N_β·x/V. The true air speed differs from the air speed that the sensor reads. Each unknown property of an
+instrument is an additional parameter, whose error is part of every interval.
 """
 
 from collections.abc import Iterator, Sequence

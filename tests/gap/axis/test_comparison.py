@@ -84,7 +84,7 @@ def test_a_weak_aileron_in_the_simulator_is_named_and_leaves_a_gap_on_unseen_fli
 
 
 def test_a_file_without_lateral_numbers_has_no_verdict(flight, monkeypatch):
-    monkeypatch.setattr(comparison, "diagnose_side", lambda case, prior: None)
+    monkeypatch.setattr(comparison, "diagnose_axis", lambda case, prior: None)
     found = compare_axis(LATERAL, flight[:2], AIRCRAFT)
     assert found.verdict == "untested"
     assert "give model.L_p" in found.sentence
@@ -93,7 +93,7 @@ def test_a_file_without_lateral_numbers_has_no_verdict(flight, monkeypatch):
 
 def test_a_derivative_that_the_log_contradicts_is_not_stated_as_changed(flight, monkeypatch):
     """The log's own estimate has the aileron of the simulator, 20 % weaker than that of the flight."""
-    monkeypatch.setattr(comparison, "diagnose_side", lambda case, prior: None)
+    monkeypatch.setattr(comparison, "diagnose_axis", lambda case, prior: None)
     weak = replace(AIRCRAFT, model={"L_delta_a": 0.8 * JET["L_delta_a"]})
     logged = comparison.estimate_axis(LATERAL, flight, AIRCRAFT)
     other = replace(logged, theta=0.8 * logged.theta)
@@ -113,7 +113,7 @@ def test_beside_an_effect_the_derivatives_are_those_of_the_model_with_the_effect
 ):
     values = {name: Value(1.0, 0.5) for name in TRUE}
     named = Diagnosis(axis="lateral", verdict=verdict, sentence="", gap=Gap(), model=values)
-    monkeypatch.setattr(comparison, "diagnose_side", lambda case, prior: named)
+    monkeypatch.setattr(comparison, "diagnose_axis", lambda case, prior: named)
     found = compare_axis(LATERAL, flight, replace(AIRCRAFT, model=TRUE))
     assert len(found.derivatives) == len(TRUE)
     assert all((one.found == Value(1.0, 0.5)) is own for one in found.derivatives)

@@ -12,11 +12,11 @@ from advisor.aircraft.reference import SIDE_PARAMETERS
 from advisor.aircraft.sensors import Beta
 from advisor.gap.alternative import Alternative, AlternativeEvidence, together
 from advisor.gap.axis import diagnosis
-from advisor.gap.axis import flight as flight_of_side
-from advisor.gap.axis.diagnosis import _capped, diagnose_side, where_of
+from advisor.gap.axis import flight as flight_of_axis
+from advisor.gap.axis.diagnosis import _capped, diagnose_axis, where_of
 from advisor.gap.axis.evidence import Squares
 from advisor.gap.axis.fit import Fit, Point
-from advisor.gap.axis.flight import SideFlight, SideModel
+from advisor.gap.axis.flight import AxisFlight, AxisModel
 from advisor.gap.axis.measure import measured, sums
 from advisor.gap.axis.models import case_of
 from advisor.gap.axis.setting import Flown
@@ -143,7 +143,7 @@ def diagnosed_with(reading):
     known = SideControl(lag_s=0.0, delay_s=0.0)
     aircraft = Aircraft(aileron=known, rudder=known, beta=Beta("none"), model=dict(JET))
     flight = [changed(m, "p", y=reading(m.channels["p"].y)) for m in maneuvers()]
-    return diagnose_side(
+    return diagnose_axis(
         case_of(LATERAL, flight, aircraft, np.array([JET[name] for name in SIDE_PARAMETERS]))
     )
 
@@ -201,7 +201,7 @@ def test_effects_that_set_the_same_number_are_never_two_causes():
     first, same, elsewhere = (
         SimpleNamespace(places=places) for places in ((("p", "scale"),), (("p", "scale"),), (("r", "scale"),))
     )
-    assert flight_of_side._beside(SimpleNamespace(effect=first), [first, same, elsewhere]) == [elsewhere]
+    assert flight_of_axis._beside(SimpleNamespace(effect=first), [first, same, elsewhere]) == [elsewhere]
 
 
 def test_an_effect_changes_what_a_late_command_does_so_that_its_slope_is_taken_anew(monkeypatch):
@@ -210,18 +210,18 @@ def test_an_effect_changes_what_a_late_command_does_so_that_its_slope_is_taken_a
         None, None, (late,), *(np.ones(3) for _ in range(2)), 0.0, *(np.ones((3, 1)) for _ in range(3)), None
     )
     again = []
-    monkeypatch.setattr(flight_of_side, "colour_share", lambda *_, **__: 1.0)
-    monkeypatch.setattr(flight_of_side, "Starts", lambda *_, **__: SimpleNamespace(of_each=[]))
-    monkeypatch.setattr(SideFlight, "_model", lambda *_: side_model(fit))
+    monkeypatch.setattr(flight_of_axis, "colour_share", lambda *_, **__: 1.0)
+    monkeypatch.setattr(flight_of_axis, "Starts", lambda *_, **__: SimpleNamespace(of_each=[]))
+    monkeypatch.setattr(AxisFlight, "_model", lambda *_: side_model(fit))
     case = SimpleNamespace(stated=(), natural=(), fit=lambda at, free, **_: again.extend(free) or fit)
-    SideFlight(case, fit, []).explained(SimpleNamespace(fit=fit, effect=None), 3)
+    AxisFlight(case, fit, []).explained(SimpleNamespace(fit=fit, effect=None), 3)
     assert [one.column for one in again] == [None]
 
 
 class TwoOptima:
     """A case with two plain fits, each the likelier one by ``heights`` at the temperature of one of them."""
 
-    stated, natural, flown = (), (), None
+    stated, natural, flown, axis = (), (), None, LATERAL
 
     def __init__(self, heights):
         self.heights = heights
@@ -248,17 +248,17 @@ def searched(monkeypatch, heights):
     """Return the plain model's fit after the search among two optima, and the parts that failed."""
     case = TwoOptima(heights)
     start = SimpleNamespace(name="lag", price=0.0, saved=0.0)
-    monkeypatch.setattr(flight_of_side, "colour_share", lambda fit, **_: fit.share)
-    monkeypatch.setattr(flight_of_side, "Starts", lambda *_, **__: SimpleNamespace(of_each=[start]))
-    monkeypatch.setattr(flight_of_side, "base_of", lambda *_: np.zeros(1))
+    monkeypatch.setattr(flight_of_axis, "colour_share", lambda fit, **_: fit.share)
+    monkeypatch.setattr(flight_of_axis, "Starts", lambda *_, **__: SimpleNamespace(of_each=[start]))
+    monkeypatch.setattr(flight_of_axis, "base_of", lambda *_: np.zeros(1))
     lag = SimpleNamespace(places=(("rudder", "lag_s"),))
     monkeypatch.setattr(
-        SideFlight, "_model", lambda self, effect, fit, *_: replace(side_model(fit), effect=effect)
+        AxisFlight, "_model", lambda self, effect, fit, *_: replace(side_model(fit), effect=effect)
     )
     monkeypatch.setattr(
-        SideFlight, "_added", lambda self, start, at, *_: replace(side_model(at, 1.0), effect=lag)
+        AxisFlight, "_added", lambda self, start, at, *_: replace(side_model(at, 1.0), effect=lag)
     )
-    side = SideFlight(case, case.fits[0], [])
+    side = AxisFlight(case, case.fits[0], [])
     _, (plain, *_) = side.explained(None, 1)
     return plain.fit, side.parts.failed
 
@@ -273,7 +273,7 @@ def test_a_search_without_an_end_stops_and_is_reported(monkeypatch):
     """Every other search finds something likelier still."""
     heights = iter(range(0, 10000, 100))
     _, (failed,) = searched(monkeypatch, lambda fit, share: -next(heights))
-    assert failed.part == flight_of_side.SEARCH
+    assert failed.part == "roll and yaw, search of the derivatives alone"
     assert "4 searches" in str(failed.problem)
 
 
@@ -283,27 +283,27 @@ def test_a_model_is_fitted_at_the_files_derivatives_only_where_others_are_likeli
     one = SimpleNamespace(evidence=Evidence(right, wrong), fit=found, effect=None, starts=None)
     again = []
     case = SimpleNamespace(natural=(), fit=lambda *given: again.append(given))
-    assert SideFlight(case, None, []).at_the_files(one, None, 1.0) is None
+    assert AxisFlight(case, None, []).at_the_files(one, None, 1.0) is None
     assert bool(again) is fitted
 
 
 def side_model(fit, nats=0.0, alternative=None):
     told = {"fit": fit, "evidence": Evidence(nats, nats), "natural": Evidence(nats, nats), "likelihood": nats}
-    return SideModel(**dict.fromkeys(SideModel.__dataclass_fields__) | told | {"alternative": alternative})
+    return AxisModel(**dict.fromkeys(AxisModel.__dataclass_fields__) | told | {"alternative": alternative})
 
 
 @pytest.mark.parametrize(("nats", "likeliest"), [(30.0, "with an effect"), (0.0, "plain")])
 def test_the_air_is_weighed_in_the_residual_of_the_likeliest_explanation(monkeypatch, nats, likeliest):
     of, still = [], SimpleNamespace(likelihood=0.0)
-    monkeypatch.setattr(flight_of_side, "side_gusts", lambda fit, *_: of.append(fit) or still)
-    monkeypatch.setattr(flight_of_side, "courses_of", lambda *_: ())
-    monkeypatch.setattr(flight_of_side, "coloured_likelihood", lambda _: 0.0)
-    monkeypatch.setattr(flight_of_side, "within_model_error", lambda _, everyone, error: everyone)
-    monkeypatch.setattr(SideFlight, "_wide", lambda *_: None)
-    monkeypatch.setattr(SideFlight, "_blown", lambda self, one, *_: one)
+    monkeypatch.setattr(flight_of_axis, "gusts_of", lambda fit, *_: of.append(fit) or still)
+    monkeypatch.setattr(flight_of_axis, "courses_of", lambda *_: ())
+    monkeypatch.setattr(flight_of_axis, "coloured_likelihood", lambda _: 0.0)
+    monkeypatch.setattr(flight_of_axis, "within_model_error", lambda _, everyone, error: everyone)
+    monkeypatch.setattr(AxisFlight, "_wide", lambda *_: None)
+    monkeypatch.setattr(AxisFlight, "_blown", lambda self, one, *_: one)
     plain, other = (SimpleNamespace(name=name, linear=lambda _: None) for name in ("plain", "with an effect"))
     stage = Stage(side_model(plain), (side_model(other, nats),), (), 1.0)
-    SideFlight(SimpleNamespace(flown=None), plain, []).in_moving_air(stage)
+    AxisFlight(SimpleNamespace(flown=None, axis=LATERAL), plain, []).in_moving_air(stage)
     assert [fit.name for fit in of] == [likeliest]
 
 
@@ -346,7 +346,7 @@ def test_a_pair_counts_where_it_makes_up_for_the_second_effects_share_of_the_pri
         of_each=[SimpleNamespace(name=one.name, price=100.0) for one in (p, r)],
         together=lambda one, other: 100.0 - saved,
     )
-    pairs = SideFlight(None, None, [p, r, *others]).pairs(
+    pairs = AxisFlight(None, None, [p, r, *others]).pairs(
         SimpleNamespace(plain=SimpleNamespace(starts=starts)), [SimpleNamespace(name="r", effect=r)]
     )
     assert [names for _, *names in pairs] == [list(pair) for pair in named]
@@ -421,12 +421,12 @@ def test_an_effect_loses_nothing_on_a_manoeuvre_that_only_the_prior_predicts(mon
         return Squares(np.minimum(told, 4.0) if one is fit else told, told)
 
     nothing = SimpleNamespace(matrix=np.zeros((1, 1, 1)), gradient=np.zeros((1, 1)))
-    monkeypatch.setattr(flight_of_side, "squares_of", of_each)
-    monkeypatch.setattr(flight_of_side, "information_of", lambda *_: tuple(vars(nothing).values()))
-    monkeypatch.setattr(flight_of_side, "step_of", lambda *_: np.zeros(1))
-    monkeypatch.setattr(flight_of_side, "change_of", lambda *_: 0.1)
-    side = SideFlight(case, plain, [effect])
-    monkeypatch.setattr(SideFlight, "_weighed", lambda *_: (Evidence(0.0, 0.0),) * 2)
+    monkeypatch.setattr(flight_of_axis, "squares_of", of_each)
+    monkeypatch.setattr(flight_of_axis, "information_of", lambda *_: tuple(vars(nothing).values()))
+    monkeypatch.setattr(flight_of_axis, "step_of", lambda *_: np.zeros(1))
+    monkeypatch.setattr(flight_of_axis, "change_of", lambda *_: 0.1)
+    side = AxisFlight(case, plain, [effect])
+    monkeypatch.setattr(AxisFlight, "_weighed", lambda *_: (Evidence(0.0, 0.0),) * 2)
     assert side._model(effect, fit, plain, 1.0).unseen == 0.0
 
 

@@ -7,11 +7,11 @@ import pytest
 from scipy.stats import multivariate_normal
 
 from advisor.aircraft.reference import SIDE_PARAMETERS
-from advisor.gap.axis.effects import side_effects
+from advisor.gap.axis.effects import axis_effects
 from advisor.gap.axis.fit import fitted, moved_by
-from advisor.gap.axis.flight import SideFlight
-from advisor.gap.axis.gusts import Gusts, coloured_likelihood, side_gusts
-from advisor.gap.axis.laws import lacking, side_laws
+from advisor.gap.axis.flight import AxisFlight
+from advisor.gap.axis.gusts import Gusts, coloured_likelihood, gusts_of
+from advisor.gap.axis.laws import axis_laws, lacking
 from advisor.gap.axis.models import case_of
 from advisor.gap.axis.residual import residual_of
 from advisor.gap.axis.starts import Starts
@@ -64,7 +64,7 @@ def test_a_gust_angle_enters_all_outputs_and_its_size_is_found(flight):
     rng = np.random.default_rng(3)
     blown = [ANGLE * course.columns @ wandering(len(course.knots), 0.9, rng) for course in courses]
     gusty = with_residual(fit, np.concatenate(blown))
-    found = side_gusts(gusty, courses, known)
+    found = gusts_of(gusty, courses, known)
     assert found.air.angle == pytest.approx(ANGLE, rel=0.4)
     assert abs(found.air.angle - ANGLE) < 4.0 * found.angle_std
     assert found.likelihood > coloured_likelihood(gusty) + 20.0
@@ -96,13 +96,13 @@ def test_a_coloured_instrument_is_no_gust(flight):
         rows = named["r"]
         left[rows] = 0.004 * wandering(rows.stop - rows.start, 0.95, rng)
     coloured = with_residual(fit, left)
-    assert side_gusts(coloured, courses, known).likelihood < coloured_likelihood(coloured) - 20.0
+    assert gusts_of(coloured, courses, known).likelihood < coloured_likelihood(coloured) - 20.0
 
 
 def test_still_air_has_no_gusts(flight):
     fit, courses, known = flight
     still = with_residual(fit, np.zeros(len(fit.fitted)))
-    found = side_gusts(still, courses, known)
+    found = gusts_of(still, courses, known)
     assert found.air.angle < 0.1 * ANGLE
     assert found.likelihood == pytest.approx(coloured_likelihood(still), abs=15.0)
 
@@ -153,7 +153,7 @@ def test_the_derivatives_are_estimated_anew_in_gusts(case, flight):
     rng = np.random.default_rng(3)
     blown = [ANGLE * course.columns @ wandering(len(course.knots), 0.9, rng) for course in courses]
     gusty = with_residual(fit, np.concatenate(blown))
-    found = side_gusts(gusty, courses, known)
+    found = gusts_of(gusty, courses, known)
     step = np.linalg.solve(found.matrix + np.diag(known.precision), found.gradient)
     white = gusty.columns * gusty.weight[:, None]
     by_white = np.linalg.solve(
@@ -183,7 +183,7 @@ def test_a_fit_moves_as_its_derivatives_say_and_its_trims_follow(case, flight):
 )  # fmt: skip
 def test_a_curve_is_found_in_its_block_with_what_bends_it(case, flight, block, of):
     fit, _, _ = flight
-    laws = {law.name: law for law in side_laws(case, fit) if law.columns is not None}
+    laws = {law.name: law for law in axis_laws(case, fit) if law.columns is not None}
     bent = f"{block}_curve_of_{of}"
     seen = laws[bent].columns @ laws[bent].std
     largest = np.max(np.abs(seen) / NOISE[fit.assembly.channel])
@@ -206,7 +206,7 @@ def test_a_law_in_an_equation_is_named_with_its_quantity_and_coefficient(case, f
 def test_a_bent_reading_is_the_square_and_the_cube_of_the_reading(case, flight):
     fit, _, _ = flight
     bent = "roll_rate_sensor_curve_of_roll_rate_sensor"
-    law = next(one for one in side_laws(case, fit) if one.name == bent)
+    law = next(one for one in axis_laws(case, fit) if one.name == bent)
     rows = fit.assembly.rows[0]["p"]
     p = fit.fitted[rows]
     most = max(np.max(np.abs(fit.fitted[named["p"]])) for named in fit.assembly.rows)
@@ -227,7 +227,7 @@ def test_a_late_roll_rate_promises_as_much_as_an_early_yaw_rate_where_all_other_
     flown = replace(case.flown, problem=replace(case.flown.problem, records=tuple(late)))
     case = replace(case, flown=flown)
     plain = case.fit(case.begin, case.natural)
-    table = [one for one in side_effects(flown) if one.name.startswith("late_")]
+    table = [one for one in axis_effects(flown) if one.name.startswith("late_")]
     promised = {one.name: one.price + 2.0 * plain.likelihood for one in Starts(case, plain, table).of_each}
     assert promised["late_roll_rate_stamps"] < -50.0
     assert promised["late_roll_rate_stamps"] == pytest.approx(promised["late_yaw_rate_stamps"], rel=0.01)
@@ -236,8 +236,8 @@ def test_a_late_roll_rate_promises_as_much_as_an_early_yaw_rate_where_all_other_
 def test_a_coloured_nat_counts_less_beside_the_prior_of_a_replaced_nuisance_parameter(case, flight):
     """At a tenth of the white noise's nats, an effect saves a tenth; what its prior costs stays whole."""
     fit, _, _ = flight
-    table = [one for one in side_effects(case.flown) if one.name == "roll_rate_scale"]
-    strained = [one for one in side_effects(case.flown) if one.name == "late_roll_rate_stamps"]
+    table = [one for one in axis_effects(case.flown) if one.name == "roll_rate_scale"]
+    strained = [one for one in axis_effects(case.flown) if one.name == "late_roll_rate_stamps"]
     left = with_residual(fit, 0.05 * fit.fitted)
     white, coloured = (Starts(case, left, table, share=share).of_each[0] for share in (1.0, 0.1**0.5))
     gains = [-2.0 * scale * left.likelihood - one.cost for scale, one in ((1.0, white), (0.1, coloured))]
@@ -253,9 +253,9 @@ def test_a_delay_of_all_commands_beyond_that_of_telemetry_is_evidence_of_one_cau
     ]
     flown = replace(case.flown, problem=replace(case.flown.problem, records=tuple(late)))
     case = replace(case, flown=flown)
-    table = [one for one in side_effects(flown) if one.name.endswith("_transport_delay")]
+    table = [one for one in axis_effects(flown) if one.name.endswith("_transport_delay")]
     plain = case.fit(case.begin, case.natural)
-    _, (without, *models) = SideFlight(case, plain, table).explained(None, len(table))
+    _, (without, *models) = AxisFlight(case, plain, table).explained(None, len(table))
     gained = {one.name: one.evidence.either - without.evidence.either for one in models}
     size = next(one.fit.values[-1] for one in models if one.name == "common_transport_delay")
     assert size == pytest.approx(0.2, abs=0.03)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.gap.axis.effects import block_of, side_effects, unseen
+from advisor.gap.axis.effects import axis_effects, block_of, unseen
 from advisor.gap.axis.fit import Flying, Point, outputs
 from advisor.gap.axis.setting import THROTTLE as OF_THROTTLE
 from advisor.gap.axis.setting import Flown, deflection, laid_out
@@ -108,7 +108,7 @@ def test_the_propeller_rolls_as_the_aileron_that_follows_the_throttle():
 
 
 def test_a_control_that_is_not_flown_has_no_effect_and_says_so():
-    named = {effect.name for effect in side_effects(FLOWN)}
+    named = {effect.name for effect in axis_effects(FLOWN)}
     assert "aileron_actuator_backlash" in named
     assert not any(name.startswith("rudder") for name in named)
     told = {one.effect: one.because for one in unseen(FLOWN)}
@@ -117,12 +117,12 @@ def test_a_control_that_is_not_flown_has_no_effect_and_says_so():
 
 def test_a_still_throttle_cannot_show_the_propeller():
     still = Flown(AxisProblem(LATERAL, (AILERON, RUDDER)), (None, Signal(T, 0.5 + 0.0 * T)))
-    assert "propeller_roll" not in {effect.name for effect in side_effects(still)}
+    assert "propeller_roll" not in {effect.name for effect in axis_effects(still)}
     assert "propeller roll" in {one.effect for one in unseen(still)}
 
 
 def test_sentences_are_those_of_the_pitch_axis_in_the_words_of_this_one():
-    said = {e.name: e for e in side_effects(FLOWN)}
+    said = {e.name: e for e in axis_effects(FLOWN)}
     play = said["aileron_actuator_backlash"].said("The real elevator has play of 0.40 deg to either side")
     assert play == "The real aileron has play of 0.40 deg to either side"
     rate = said["roll_rate_scale"].said("The pitch rate reads 10.0 % too much")
@@ -132,8 +132,8 @@ def test_sentences_are_those_of_the_pitch_axis_in_the_words_of_this_one():
 
 def test_a_vane_is_an_effect_only_where_the_file_states_its_place():
     stated = replace(FLOWN, arm_is_stated=True)
-    assert "alpha_vane_offset" in {effect.name for effect in side_effects(stated)}
-    assert "alpha_vane_offset" not in {effect.name for effect in side_effects(FLOWN)}
+    assert "alpha_vane_offset" in {effect.name for effect in axis_effects(stated)}
+    assert "alpha_vane_offset" not in {effect.name for effect in axis_effects(FLOWN)}
 
 
 @pytest.mark.parametrize(("change", "value"), [(0.05, 0.07), (0.5, 0.1), (-0.5, 0.0)])
@@ -147,14 +147,14 @@ def test_a_parameter_moves_within_its_bounds(change, value):
 def test_a_delay_of_all_commands_is_one_cause_where_two_controls_are_flown():
     both = {
         effect.name: effect
-        for effect in side_effects(Flown(AxisProblem(LATERAL, (AILERON, RUDDER)), (None, None)))
+        for effect in axis_effects(Flown(AxisProblem(LATERAL, (AILERON, RUDDER)), (None, None)))
     }
     common = both["common_transport_delay"]
     assert common.places == (COMMAND,)
     assert block_of(LATERAL, common.of) == "input"
     said = common.said("The simulator responds 92 ms too early: a delay between command and surface")
     assert said == "The simulator responds 92 ms too early: a delay between all commands and surfaces"
-    assert "common_transport_delay" not in {effect.name for effect in side_effects(FLOWN)}
+    assert "common_transport_delay" not in {effect.name for effect in axis_effects(FLOWN)}
 
 
 def test_servos_and_streams_have_equal_prior_widths_on_both_axes():
@@ -162,7 +162,7 @@ def test_servos_and_streams_have_equal_prior_widths_on_both_axes():
     derivatives = np.array([-4.0, 0.0, -0.4, -40.0, -5.0, -60.0])
     sized = [with_sizes(variant, derivatives, flights) for variant in variants_for(flights)]
     pitch = {(v.effect, v.names): v.prior_std for v in sized}
-    side = {(e.variant.effect, e.variant.names): e.std for e in side_effects(FLOWN)}
+    side = {(e.variant.effect, e.variant.names): e.std for e in axis_effects(FLOWN)}
     shared = {key for key in pitch.keys() & side.keys() if key[0] != "accelerometer_offset"}
     assert {"actuator_lag", "attitude_skew", "pitch_rate_scale"} <= {effect for effect, _ in shared}
     assert all(pitch[key] == side[key] for key in shared)
