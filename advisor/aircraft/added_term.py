@@ -12,8 +12,8 @@ from typing import Any
 
 EQUATIONS: Mapping[str, str] = {"Z": "α̇", "M": "q̇", "Y": "β̇", "L": "ṗ", "N": "ṙ"}
 """Letter of each equation, and the rate on the equation's left side."""
-OF_PITCH, OF_SIDE = ("Z", "M"), ("Y", "L", "N")
-"""Letters of the equations of each axis, in the order of its states."""
+OF_PITCH = ("Z", "M")
+"""Letters of the equations of the pitch axis, in the order of its states."""
 SIGNALS: Mapping[str, str] = {
     "alpha": "alpha", "beta": "beta", "p": "p", "q": "q", "r": "r", "phi": "bank", "theta": "theta",
     "V": "airspeed", "delta_e": "elevator", "delta_a": "aileron", "delta_r": "rudder", "thrust": "throttle",

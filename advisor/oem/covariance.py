@@ -13,7 +13,6 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.special import stdtrit
 
-from advisor.model.short_period import NAMES
 from advisor.oem.arrow import inverse_of
 from advisor.oem.colour import Colour, Stretch, find_colour, moved, powers, product
 from advisor.oem.extra import Extra
@@ -26,8 +25,6 @@ OPEN_SHARE = 0.01
 unresolved."""
 DIFFERENCE = 0.05
 LEAST_FREEDOM = 3.0
-REPORTED = NAMES.places
-"""Place of each of the eight short-period parameters: whether it is shared, and its index."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -42,7 +42,6 @@ def test_an_effect_lacks_no_part(effect):
     assert described_in_fits or effect.outside_fits is not None
     assert {v.block for v in described_in_fits} <= {effect.block}
     assert set(effect.distinguished_by) <= set(EFFECTS)
-    assert effect.need is None or effect.need.parameter in effect.keys
     assert effect.curve is None or effect.curve.powers.keys() <= effect.keys.keys()
     assert effect.servo.keys() <= effect.keys.keys()
     assert {part for part, _ in effect.servo.values()} <= {one.name for one in fields(ExportedServo)}

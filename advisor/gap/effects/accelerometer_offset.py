@@ -37,7 +37,7 @@ EFFECT = Effect(
         "The accelerometer sits {arm_m:.2f} m further ahead than in the simulator",
         "The accelerometer sits {arm_m:.2f} m further back than in the simulator",
     ),
-    need=Need("arm_m", "no vertical acceleration", "RAW_IMU at 50 Hz"),
+    need=Need("no vertical acceleration", "RAW_IMU at 50 Hz"),
     stated=("accelerometer", "arm_m"),
     # An accelerometer behind the centre of gravity is found less often than a vane ahead of it.
 )

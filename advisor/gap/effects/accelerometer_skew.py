@@ -13,6 +13,6 @@ EFFECT = Effect(
         "The accelerometer is stamped {skew_s_ms:.0f} ms too late",
         "The accelerometer is stamped {skew_s_ms:.0f} ms too early",
     ),
-    need=Need("skew_s", "no vertical acceleration", "RAW_IMU at 50 Hz"),
+    need=Need("no vertical acceleration", "RAW_IMU at 50 Hz"),
     imitated_by=UNFILTERED,
 )

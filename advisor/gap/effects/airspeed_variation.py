@@ -56,7 +56,7 @@ EFFECT = Effect(
         "exponent_M": "The real moments grow with the air speed's power {exponent_M_power:.1f}, "
         "the lift with {exponent_power:.1f}",
     },
-    need=Need("change", "the air speed was constant", "fly at two air speeds"),
+    need=Need("the air speed was constant", "fly at two air speeds"),
     unrecorded=("airspeed", "no air speed in the log", "VFR_HUD at 10 Hz"),
     without_speed=("the air speed reads almost zero", "check the air speed sensor"),
 )

@@ -19,5 +19,5 @@ EFFECT = Effect(
         "The angle of attack channel reads {bias_rad_deg:.2f} deg too high",
         "The angle of attack channel reads {bias_rad_deg:.2f} deg too low",
     ),
-    need=Need("bias_rad", "no climb rate", "VFR_HUD and ATTITUDE at 10 Hz"),
+    need=Need("no climb rate", "VFR_HUD and ATTITUDE at 10 Hz"),
 )

@@ -16,7 +16,7 @@ EFFECT = Effect(
     variants=always(_RATE),
     of_the_stick=False,
     said="The rate of the angle of attack makes a pitching moment that the simulator lacks",
-    need=Need("M_alpha_dot", "the derivatives mimic it", "pulses of a flap, which move α and not q"),
+    need=Need("the derivatives mimic it", "pulses of a flap, which move α and not q"),
     imitated_by=(
         "other derivatives of the pitching moment",
         "compare the elevator that trims level flight at several speeds: the angle of attack is then steady",

@@ -28,7 +28,7 @@ EFFECT = Effect(
         "The angle of attack channel lags by {lag_s_ms:.0f} ms",
         "The angle of attack channel is {lag_s_ms:.0f} ms ahead",
     ),
-    need=Need("lag_s", "no angle of attack", "AOA_SSA at 50 Hz, or a vane"),
+    need=Need("no angle of attack", "AOA_SSA at 50 Hz, or a vane"),
     distinguished_by={
         "alpha_skew": "fly faster steps, or compare the channel's stamps with the vane's",
         "alpha_vane_offset": "fly at two air speeds: only the arm's part is proportional to 1/V",

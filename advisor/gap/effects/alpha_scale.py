@@ -18,6 +18,6 @@ EFFECT = Effect(
         "The angle of attack channel reads {scale_percent:.0f} % too much",
         "The angle of attack channel reads {scale_percent:.0f} % too little",
     ),
-    need=Need("scale", "no angle of attack", "AOA_SSA at 50 Hz, or a vane"),
+    need=Need("no angle of attack", "AOA_SSA at 50 Hz, or a vane"),
     imitated_without=("a_z", "Z_q of the model", "log the accelerometer (RAW_IMU) at 50 Hz"),
 )

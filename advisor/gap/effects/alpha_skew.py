@@ -14,5 +14,5 @@ EFFECT = Effect(
         "The angle of attack is stamped {skew_s_ms:.0f} ms too late",
         "The angle of attack is stamped {skew_s_ms:.0f} ms too early",
     ),
-    need=Need("skew_s", "no angle of attack", "AOA_SSA at 50 Hz, or a vane"),
+    need=Need("no angle of attack", "AOA_SSA at 50 Hz, or a vane"),
 )

@@ -35,7 +35,7 @@ EFFECT = Effect(
         "The vane sits {arm_m:.2f} m further ahead than in the simulator",
         "The vane sits {arm_m:.2f} m further back than in the simulator",
     ),
-    need=Need("arm_m", "no angle of attack", "AOA_SSA at 50 Hz, or a vane"),
+    need=Need("no angle of attack", "AOA_SSA at 50 Hz, or a vane"),
     distinguished_by={
         "accelerometer_offset": "measure where vane and IMU are: alpha.vane_arm_m, accelerometer.arm_m",
         "alpha_skew": "fly at two air speeds: only the arm's part is proportional to 1/V",

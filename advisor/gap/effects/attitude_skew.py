@@ -56,6 +56,6 @@ EFFECT = Effect(
             "Attitude and pitch rate are stamped {skew_s_ms:.0f} ms too early",
         )
     },
-    need=Need("skew_s", "no attitude", "ATTITUDE at 50 Hz"),
+    need=Need("no attitude", "ATTITUDE at 50 Hz"),
     imitated_by=UNFILTERED,
 )

@@ -30,7 +30,7 @@ EFFECT = Effect(
     variants=_variants,
     of_one_flight=True,
     said="The centre of gravity moved during the flight",
-    need=Need("step", "fewer than three manoeuvres", "repeat the same manoeuvre early and late"),
+    need=Need("fewer than three manoeuvres", "repeat the same manoeuvre early and late"),
     distinguished_by={
         "mass_change": _WEIGHT,
         "icing": _WEIGHT,

@@ -39,6 +39,6 @@ EFFECT = Effect(
     variants=_variants,
     of_the_stick=False,
     said="The ground was near enough to change lift or trim",
-    need=Need("Z_h", "the height hardly varied", "fly low and high with a range finder"),
+    need=Need("the height hardly varied", "fly low and high with a range finder"),
     unrecorded=("height", "no height in the log", "fly low and high with a range finder"),
 )

@@ -13,5 +13,5 @@ EFFECT = Effect(
         "An upward gust of {amplitude_m_s:.2g} m/s passed",
         "A downward gust of {amplitude_m_s:.2g} m/s passed",
     ),
-    need=Need("amplitude_m_s", "no angle of attack", "AOA_SSA at 50 Hz, or a vane"),
+    need=Need("no angle of attack", "AOA_SSA at 50 Hz, or a vane"),
 )

@@ -32,7 +32,7 @@ EFFECT = Effect(
     variants=_variants,
     of_one_flight=True,
     said="Lift and control weakened during the flight, as by ice",
-    need=Need("Z_alpha", "fewer than three manoeuvres", "repeat the same manoeuvre early and late"),
+    need=Need("fewer than three manoeuvres", "repeat the same manoeuvre early and late"),
     distinguished_by={
         "airspeed_variation": "repeat the same manoeuvre at the same air speed, early and late"
     },

@@ -43,7 +43,7 @@ EFFECT = Effect(
     variants=_variants,
     of_one_flight=True,
     said="The mass changed during the flight",
-    need=Need("step", "fewer than three manoeuvres", "repeat the same manoeuvre early and late"),
+    need=Need("fewer than three manoeuvres", "repeat the same manoeuvre early and late"),
     distinguished_by={
         "icing": "log fuel and weight; ice moves lift and control by different shares",
         "airspeed_variation": "repeat the same manoeuvre at the same air speed, early and late",

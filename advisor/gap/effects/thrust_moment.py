@@ -36,6 +36,6 @@ EFFECT = Effect(
     of_the_stick=False,
     said="Thrust pitches the real aircraft: its line misses the centre of gravity",
     said_with={"lag_s": "Thrust pitches the real aircraft, {lag_s_ms:.0f} ms behind the throttle"},
-    need=Need("M_throttle", "the throttle did not move", "fly at two air speeds"),
+    need=Need("the throttle did not move", "fly at two air speeds"),
     unrecorded=("throttle", "no throttle in the log", "VFR_HUD at 10 Hz"),
 )

@@ -10,6 +10,6 @@ EFFECT = Effect(
     outside_fits=lambda _: True,
     of_one_flight=True,
     said="The air was not still: gusts of about {sigma_w_m_s:.2g} m/s",
-    need=Need("sigma_w_m_s", "no angle of attack", "AOA_SSA at 50 Hz, or a vane"),
+    need=Need("no angle of attack", "AOA_SSA at 50 Hz, or a vane"),
     distinguished_by={"gust": "fly more manoeuvres: turbulence recurs in each, a single gust does not"},
 )

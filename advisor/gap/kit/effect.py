@@ -30,8 +30,6 @@ ANY = float("-inf")
 class Need:
     """Reason why an effect cannot be detected, and the measurement that would detect it."""
 
-    parameter: str
-    """The effect's first parameter, in the spelling of the aircraft file."""
     because: str
     add: str
 
