@@ -74,12 +74,12 @@ class Reference:
         positive=True,
     )] = None  # fmt: skip
     ixx_kg_m2: Annotated[float | None, Key(
-        "Rolling moment of inertia about the centre of gravity, kg m², for Gazebo's roll and yaw.",
+        "Rolling moment of inertia about the centre of gravity, kg m².",
         example="0.5",
         positive=True,
     )] = None  # fmt: skip
     izz_kg_m2: Annotated[float | None, Key(
-        "Yawing moment of inertia about the centre of gravity, kg m², for Gazebo's roll and yaw.",
+        "Yawing moment of inertia about the centre of gravity, kg m².",
         example="1.3",
         positive=True,
     )] = None  # fmt: skip

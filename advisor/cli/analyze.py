@@ -41,7 +41,7 @@ if TYPE_CHECKING:
     help="Axis to analyze: pitch (elevator), lateral (aileron and rudder), or both.",
 )
 @export_option(
-    "Write the model of the flight, both axes, as jsbsim, ardupilot, sdf, matlab or aircraft; repeatable."
+    "Write the model of the flight, both axes, as jsbsim, ardupilot, matlab or aircraft; repeatable."
 )
 @json_option
 def command(

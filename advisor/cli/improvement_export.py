@@ -20,7 +20,7 @@ F = TypeVar("F", bound=Callable[..., Any])
 
 
 def export_option(
-    what: str = "Write both axes, improved, as jsbsim, ardupilot, sdf, matlab or aircraft; repeatable.",
+    what: str = "Write both axes, improved, as jsbsim, ardupilot, matlab or aircraft; repeatable.",
 ) -> Callable[[F], F]:
     """Return a decorator that adds the option ``--export FORMAT:FILE``, repeatable, as ``exports``."""
     return click.option("--export", "exports", multiple=True, metavar="FORMAT:FILE", help=what)

@@ -1,3 +1,3 @@
 """Names of the model export formats for options and messages, without imports of the formats."""
 
-NAMES = ("jsbsim", "ardupilot", "sdf", "matlab", "aircraft")
+NAMES = ("jsbsim", "ardupilot", "matlab", "aircraft")

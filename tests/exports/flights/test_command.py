@@ -41,7 +41,7 @@ def test_an_unknown_format_is_refused_with_those_that_are(advisor: Advisor, tmp_
     run = advisor("export", "none.tlog", "-o", tmp_path, "--format", "csv,xlsx")
     assert run.returncode == 2
     assert run.stderr == (
-        "--format: xlsx is no format; the formats are csv, parquet, mat, mcap, jsbsim, ardupilot, sdf, "
+        "--format: xlsx is no format; the formats are csv, parquet, mat, mcap, jsbsim, ardupilot, "
         "matlab, aircraft.\n"
     )
 

@@ -1,7 +1,6 @@
 """``advisor gap --export``: mistakes are refused before any work, and each file is written whole or not."""
 
 import json
-import re
 from dataclasses import replace
 from pathlib import Path
 
@@ -16,6 +15,7 @@ from advisor.aircraft_file.read import load_aircraft
 from advisor.analysis import gap as reading
 from advisor.cli import group as cli
 from advisor.exports.models.flown import improved_model
+from advisor.exports.models.formats import ardupilot_format
 from advisor.exports.models.write import ExportOrder, carry_out, order_of
 from advisor.gap.result import Diagnosis, Value
 from advisor.simulators.compare import Compared
@@ -54,7 +54,7 @@ def gap(folder: Path, monkeypatch, *arguments: str, content: object = FILE, answ
 @pytest.mark.parametrize(
     ("order", "sentence"),
     [
-        ("simulink:x.mdl", "'simulink' is none of the formats jsbsim, ardupilot, sdf, matlab, aircraft"),
+        ("simulink:x.mdl", "'simulink' is none of the formats jsbsim, ardupilot, matlab, aircraft"),
         ("matlab", "name the file behind a colon, as in matlab:FILE"),
         ("matlab:", "name the file behind a colon"),
         ("matlab:nowhere/x.m", "there is no folder nowhere"),
@@ -80,14 +80,13 @@ def test_an_order_that_cannot_be_carried_out_is_refused_before_the_log_is_read(
 
 
 def test_two_orders_for_one_file_are_refused(tmp_path, monkeypatch):
-    result = gap(tmp_path, monkeypatch, "--export", "matlab:x.m", "--export", "sdf:x.m")
+    result = gap(tmp_path, monkeypatch, "--export", "matlab:x.m", "--export", "aircraft:x.m")
     assert "is already read or written by this command" in str(result.exception)
 
 
-@pytest.mark.parametrize("order", ["sdf:x.sdf", "ardupilot:x.json"])
-def test_the_reference_that_coefficients_lack_is_named_before_the_log_is_read(tmp_path, monkeypatch, order):
+def test_the_reference_that_coefficients_lack_is_named_before_the_log_is_read(tmp_path, monkeypatch):
     lacking = FILE | {"reference": {"mass_kg": 10.0, "chord_m": 0.3}}
-    result = gap(tmp_path, monkeypatch, "--export", order, content=lacking)
+    result = gap(tmp_path, monkeypatch, "--export", "ardupilot:x.json", content=lacking)
     assert "need wing_area_m2, iyy_kg_m2; give them under reference:" in str(result.exception)
 
 
@@ -100,28 +99,30 @@ def test_the_simulators_own_aircraft_is_not_overwritten(tmp_path, monkeypatch):
 
 
 def test_the_document_lists_the_files_written_and_what_they_do_not_carry(tmp_path, monkeypatch):
-    orders = ["--export", "matlab:x.m", "--export", "sdf:x.sdf", "--export", "ardupilot:x.parm"]
+    orders = ["--export", "matlab:x.m", "--export", "ardupilot:x.parm"]
     result = gap(tmp_path, monkeypatch, "--json", *orders, answer=found())
     assert result.return_value == 0
     assert json.loads(result.stdout)["exports"] == [
         {"format": "matlab", "file": "x.m", "left_out": [NO_SIDE]},
-        {"format": "sdf", "file": "x.sdf", "left_out": [NO_SIDE, "delay 0.03 s", "lag 0.08 s"]},
         {"format": "ardupilot", "file": "x.parm", "left_out": []},
     ]
-    assert all((tmp_path / name).is_file() for name in ("x.m", "x.sdf", "x.parm"))
-    assert f"x.sdf: written (sdf); it does not carry: {NO_SIDE}, delay 0.03 s, lag 0.08 s." in result.stderr
+    assert all((tmp_path / name).is_file() for name in ("x.m", "x.parm"))
+    assert f"x.m: written (matlab); it does not carry: {NO_SIDE}." in result.stderr
 
 
 def test_a_format_that_fails_after_the_diagnosis_leaves_the_diagnosis_and_the_other_files(
     tmp_path, monkeypatch
 ):
-    unstable = found(model=found().model | {"M_alpha": Value(3.0, 0.1)})
-    orders = ["--export", "sdf:x.sdf", "--export", "matlab:x.m"]
-    result = gap(tmp_path, monkeypatch, "--json", *orders, answer=unstable)
+    def refused(*_):
+        raise ConfigurationError("--export ardupilot: no coefficients.")
+
+    monkeypatch.setattr(ardupilot_format, "_pitch", refused)
+    orders = ["--export", "ardupilot:x.json", "--export", "matlab:x.m"]
+    result = gap(tmp_path, monkeypatch, "--json", *orders, answer=found())
     assert result.return_value == 2
     assert [one["format"] for one in json.loads(result.stdout)["exports"]] == ["matlab"]
-    assert "need M_alpha and M_q below zero" in result.stderr
-    assert not (tmp_path / "x.sdf").exists()
+    assert "no coefficients" in result.stderr
+    assert not (tmp_path / "x.json").exists()
 
 
 def test_without_orders_the_document_lists_none(tmp_path, monkeypatch):
@@ -164,10 +165,15 @@ def test_the_servo_that_the_file_states_is_part_of_what_is_exported(tmp_path):
 
 
 def test_the_height_recorded_gives_the_density(tmp_path):
-    high = improved_model(found(air=air_at(1100.0)), AIRCRAFT, None)
-    carry_out([ExportOrder("sdf", tmp_path / "x.sdf")], high)
-    (found_here,) = re.findall("<air_density>(.*)</air_density>", (tmp_path / "x.sdf").read_text())[:1]
-    assert float(found_here) == pytest.approx(1.1008, abs=1e-4)
+    slopes = []
+    for height_m in (0.0, 1100.0):
+        model = improved_model(found(air=air_at(height_m)), AIRCRAFT, None)
+        carry_out([ExportOrder("ardupilot", tmp_path / "x.json")], model)
+        lines = (tmp_path / "x.json").read_text().splitlines()
+        written = json.loads("\n".join(line for line in lines if not line.startswith("#")))
+        slopes.append(written["c_lift_a"])
+    # The standard atmosphere has 1.225 and 1.1008 kg/m³ there.
+    assert slopes[1] / slopes[0] == pytest.approx(1.225 / 1.1008, rel=1e-4)
 
 
 def test_a_path_with_colons_is_a_path():
