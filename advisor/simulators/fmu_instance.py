@@ -6,7 +6,6 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Any, Literal
 
-from advisor.simulators.fmu_model_exchange import EndedError, ModelExchange
 from advisor.words.problems import UnusableInputError
 
 _REAL = ("Real", "Float64")
@@ -15,13 +14,12 @@ Use = Literal["output", "input", "start"]
 
 
 class Fmu:
-    """An FMU, unpacked into the temporary folder of this process; co-simulation is preferred to model
-    exchange.
+    """An FMU for co-simulation, unpacked into the temporary folder of this process.
 
     Raises
     ------
     UnusableInputError
-        The file is no FMU of FMI 2 or 3, has no simulation interface, or no binary for this platform. The
+        The file is no FMU of FMI 2 or 3, is for no co-simulation, or has no binary for this platform. The
         other methods raise it for a missing variable, a value that is no number, or a refused call.
     """
 
@@ -39,10 +37,8 @@ class Fmu:
         version = self._description.fmiVersion
         if not version.startswith(("2.", "3.")):
             raise self._unusable(f"is of FMI {version}", "Export it as FMI 2 or FMI 3.")
-        if self._description.coSimulation is None and self._description.modelExchange is None:
-            mend = "Export it for one of them."
-            raise self._unusable("holds neither co-simulation nor model exchange", mend)
-        self._kind = "ModelExchange" if self._description.coSimulation is None else "CoSimulation"
+        if self._description.coSimulation is None:
+            raise self._unusable("is for no co-simulation", "Export it for co-simulation, with its solver.")
         if fmpy.platform not in platforms and fmpy.platform_tuple not in platforms:
             has = ", ".join(platforms) or "none"
             raise self._unusable(
@@ -52,7 +48,6 @@ class Fmu:
         self._is_fmi3 = version.startswith("3.")
         self._variables = {variable.name: variable for variable in self._description.modelVariables}
         self._instance: Any = None
-        self._solver: ModelExchange | None = None
 
     @property
     def default_step_s(self) -> float | None:
@@ -87,15 +82,13 @@ class Fmu:
 
         self.end()
         try:
-            instance = instantiate_fmu(self._folder, self._description, fmi_type=self._kind)
+            instance = instantiate_fmu(self._folder, self._description, fmi_type="CoSimulation")
             self._instance = instance
             if not self._is_fmi3:
                 instance.setupExperiment(startTime=0.0)
             self.write(start)
             instance.enterInitializationMode()
             instance.exitInitializationMode()
-            if self._kind == "ModelExchange":
-                self._solver = ModelExchange(instance, self._description)
         except UnusableInputError:
             raise
         except Exception as error:
@@ -122,23 +115,17 @@ class Fmu:
     def step(self, t: float, width: float) -> None:
         """Advance the FMU from ``t`` by ``width`` seconds."""
         try:
-            if self._solver is not None:
-                self._solver.advance(t, width)
-            else:
-                ended = self._instance.doStep(t, width)
-                if self._is_fmi3 and ended[1]:
-                    raise EndedError
-        except EndedError as error:
-            ending = f"ends its simulation at {t:.2f} s"
-            raise self._unusable(ending, "Let it run as long as a manoeuvre.") from error
+            ended = self._instance.doStep(t, width)
         except Exception as error:
             raise self._refused(f"at {t:.2f} s", error) from error
+        if self._is_fmi3 and ended[1]:
+            raise self._unusable(f"ends its simulation at {t:.2f} s", "Let it run as long as a manoeuvre.")
 
     def end(self) -> None:
         """Free the FMU's instance, if any."""
         if self._instance is None:
             return
-        instance, self._instance, self._solver = self._instance, None, None
+        instance, self._instance = self._instance, None
         # An FMU that refused a step may refuse to end, too.
         with suppress(Exception):
             instance.terminate()

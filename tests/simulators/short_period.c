@@ -4,8 +4,6 @@
    q'     = V^2 (m0 + ma alpha + md delta) + mq V q + moment
    Roll and yaw are linear in beta, p, r, aileron and rudder (ROLL, YAW), with gravity.
    With LAG defined the surface follows the command with that time constant in s.
-   With RELAY defined a moment of -RELAY acts where theta exceeds 0.29, and a moment of 0.5 after 1.2 s.
-   As model exchange it hands out its states and rates, and decides on the relay at events alone.
    With FAULT defined a step crashes (1), hangs (2) or is refused (3) after 0.05 s. */
 #include <math.h>
 #include <stdlib.h>
@@ -36,8 +34,6 @@ static const double YAW[5] = {6.0, -0.2, -1.0, 0.5, -5.0};
 typedef struct {
     double value[COUNT];
     double surface;
-    double t;
-    double relay;
 } Model;
 
 static Model *make(void) {
@@ -53,14 +49,6 @@ static void outputs(Model *m) {
     v[LOAD_FACTOR] = L * v[V] * v[V] * (v[ALPHA] + C * m->surface) / G;
 }
 
-static void decide(Model *m) {
-#ifdef RELAY
-    m->relay = (m->value[THETA] > 0.29 ? -RELAY : 0.0) + (m->t > 1.2 - 1e-9 ? 0.5 : 0.0);
-#else
-    (void)m;
-#endif
-}
-
 /* Rates of alpha, q, theta and the surface. */
 static void rates(Model *m, double rate[4]) {
     double *v = m->value;
@@ -71,7 +59,7 @@ static void rates(Model *m, double rate[4]) {
     rate[3] = 0.0;
 #endif
     rate[0] = v[Q] + G / v[V] - L * v[V] * (v[ALPHA] + C * m->surface) + v[FORCE];
-    rate[1] = v[V] * v[V] * (M0 + MA * v[ALPHA] + MD * m->surface) + MQ * v[V] * v[Q] + v[MOMENT] + m->relay;
+    rate[1] = v[V] * v[V] * (M0 + MA * v[ALPHA] + MD * m->surface) + MQ * v[V] * v[Q] + v[MOMENT];
     rate[2] = v[Q];
 }
 
@@ -106,8 +94,6 @@ static STATUS fly(Model *m, double t, double width) {
 #endif
     for (i = 0; i < n; i++) {
         double dt = width / n, rate[4];
-        m->t = t + i * dt;
-        decide(m);
         rates(m, rate);
         v[ALPHA] += dt * rate[0];
         v[Q] += dt * rate[1];
@@ -132,52 +118,7 @@ static STATUS get(Model *m, const Reference *which, size_t n, Real *values) {
     return OK;
 }
 
-/* States: alpha, q, theta and the surface. */
-static STATUS states(Model *m, Real x[]) {
-    x[0] = m->value[ALPHA], x[1] = m->value[Q], x[2] = m->value[THETA], x[3] = m->surface;
-    return OK;
-}
-
-static STATUS put(Model *m, const Real x[]) {
-    m->value[ALPHA] = x[0], m->value[Q] = x[1], m->value[THETA] = x[2], m->surface = x[3];
-    return OK;
-}
-
-static STATUS derivatives(Model *m, Real rate[]) {
-    rates(m, rate);
-    return OK;
-}
-
-static STATUS indicators(Model *m, Real z[]) {
-    z[0] = m->value[THETA] - 0.29;
-    return OK;
-}
-
 #ifdef FMI3
-fmi3Instance fmi3InstantiateModelExchange(fmi3String name, fmi3String token, fmi3String resources,
-    fmi3Boolean visible, fmi3Boolean logging, fmi3InstanceEnvironment environment, fmi3LogMessageCallback log) {
-    return make();
-}
-fmi3Status fmi3EnterEventMode(fmi3Instance m) { return OK; }
-fmi3Status fmi3EnterContinuousTimeMode(fmi3Instance m) { return OK; }
-fmi3Status fmi3UpdateDiscreteStates(fmi3Instance instance, fmi3Boolean *more, fmi3Boolean *terminate,
-    fmi3Boolean *nominals, fmi3Boolean *values, fmi3Boolean *timed, fmi3Float64 *next) {
-    Model *m = instance;
-    decide(m);
-    *more = *terminate = *nominals = *values = fmi3False;
-    *timed = m->t < 1.2 - 1e-9;
-    *next = 1.2;
-    return OK;
-}
-fmi3Status fmi3CompletedIntegratorStep(fmi3Instance m, fmi3Boolean kept, fmi3Boolean *event, fmi3Boolean *terminate) {
-    *event = *terminate = fmi3False;
-    return OK;
-}
-fmi3Status fmi3SetTime(fmi3Instance instance, fmi3Float64 t) { ((Model *)instance)->t = t; return OK; }
-fmi3Status fmi3SetContinuousStates(fmi3Instance m, const fmi3Float64 x[], size_t n) { return put(m, x); }
-fmi3Status fmi3GetContinuousStates(fmi3Instance m, fmi3Float64 x[], size_t n) { return states(m, x); }
-fmi3Status fmi3GetContinuousStateDerivatives(fmi3Instance m, fmi3Float64 x[], size_t n) { return derivatives(m, x); }
-fmi3Status fmi3GetEventIndicators(fmi3Instance m, fmi3Float64 z[], size_t n) { return indicators(m, z); }
 fmi3Instance fmi3InstantiateCoSimulation(fmi3String name, fmi3String token, fmi3String resources,
     fmi3Boolean visible, fmi3Boolean logging, fmi3Boolean events, fmi3Boolean early,
     const fmi3ValueReference required[], size_t nRequired, fmi3InstanceEnvironment environment,
@@ -198,26 +139,6 @@ fmi3Status fmi3DoStep(fmi3Instance m, fmi3Float64 t, fmi3Float64 width, fmi3Bool
     return fly(m, t, width);
 }
 #else
-fmi2Status fmi2EnterEventMode(fmi2Component m) { return OK; }
-fmi2Status fmi2EnterContinuousTimeMode(fmi2Component m) { return OK; }
-fmi2Status fmi2NewDiscreteStates(fmi2Component component, fmi2EventInfo *info) {
-    Model *m = component;
-    decide(m);
-    info->newDiscreteStatesNeeded = info->terminateSimulation = fmi2False;
-    info->nominalsOfContinuousStatesChanged = info->valuesOfContinuousStatesChanged = fmi2False;
-    info->nextEventTimeDefined = m->t < 1.2 - 1e-9;
-    info->nextEventTime = 1.2;
-    return OK;
-}
-fmi2Status fmi2CompletedIntegratorStep(fmi2Component m, fmi2Boolean kept, fmi2Boolean *event, fmi2Boolean *terminate) {
-    *event = *terminate = fmi2False;
-    return OK;
-}
-fmi2Status fmi2SetTime(fmi2Component component, fmi2Real t) { ((Model *)component)->t = t; return OK; }
-fmi2Status fmi2SetContinuousStates(fmi2Component m, const fmi2Real x[], size_t n) { return put(m, x); }
-fmi2Status fmi2GetContinuousStates(fmi2Component m, fmi2Real x[], size_t n) { return states(m, x); }
-fmi2Status fmi2GetDerivatives(fmi2Component m, fmi2Real x[], size_t n) { return derivatives(m, x); }
-fmi2Status fmi2GetEventIndicators(fmi2Component m, fmi2Real z[], size_t n) { return indicators(m, z); }
 fmi2Component fmi2Instantiate(fmi2String name, fmi2Type type, fmi2String guid, fmi2String resources,
     const fmi2CallbackFunctions *functions, fmi2Boolean visible, fmi2Boolean logging) { return make(); }
 void fmi2FreeInstance(fmi2Component m) { free(m); }

@@ -18,27 +18,20 @@ INPUTS, PARAMETERS = (*NAMES[:3], "aileron", "rudder"), NAMES[3:7]
 STARTS = {"V": 30.0, "h": 500.0, "delta_e": -0.11}
 
 
-RATES = ("alpha_rate", "q_rate", "theta_rate", "surface_rate")
-CROSSING = "theta_beyond"
-
-
 def build(
     folder: Path,
     fmi: int,
     fault: int | None = None,
     platform: str | None = None,
     lag_s: float | None = None,
-    relay: float | None = None,
-    exchanges: bool = False,
 ) -> Path:
-    """Return an FMU in ``folder``; ``platform`` names another folder of binaries than this computer's.
-    Without its solver it ``exchanges`` its states."""
+    """Return an FMU in ``folder``; ``platform`` names another folder of binaries than this computer's."""
     flags = [*(["-DFMI3"] if fmi == 3 else []), *([] if fault is None else [f"-DFAULT={fault}"])]
-    flags += [f"-D{name}={value}" for name, value in (("LAG", lag_s), ("RELAY", relay)) if value is not None]
+    flags += [] if lag_s is None else [f"-DLAG={lag_s}"]
     file = folder / "short_period.fmu"
     place = platform or (fmpy.platform if fmi == 2 else fmpy.platform_tuple)
     with zipfile.ZipFile(file, "w") as archive:
-        archive.writestr("modelDescription.xml", described(fmi, exchanges))
+        archive.writestr("modelDescription.xml", described(fmi))
         suffix = ".dylib" if "darwin" in place else fmpy.sharedLibraryExtension
         archive.writestr(f"binaries/{place}/ShortPeriod{suffix}", _library(fmi, *flags))
     return file
@@ -56,24 +49,17 @@ def _library(fmi: int, *flags: str) -> bytes:
         return library.read_bytes()
 
 
-def described(fmi: int, exchanges: bool = False) -> str:
-    names = (*NAMES, *(*RATES, CROSSING) * exchanges)
-    variables = "".join(_variable(fmi, i, name) for i, name in enumerate(names))
-    rates = range(len(NAMES), len(NAMES) + len(RATES)) if exchanges else ()
+def described(fmi: int) -> str:
+    variables = "".join(_variable(fmi, i, name) for i, name in enumerate(NAMES))
     if fmi == 2:
         head = 'fmiVersion="2.0" modelName="s" guid="{s}"'
-        head += ' numberOfEventIndicators="1"' * exchanges
         structure = '<Outputs><Unknown index="8"/></Outputs>'
-        derived = "".join(f'<Unknown index="{i + 1}"/>' for i in rates)
-        structure += f"<Derivatives>{derived}</Derivatives>" * exchanges
     else:
         head = 'fmiVersion="3.0" modelName="s" instantiationToken="{s}"'
         structure = '<Output valueReference="7"/>'
-        structure += "".join(f'<ContinuousStateDerivative valueReference="{i}"/>' for i in rates)
-        structure += f'<EventIndicator valueReference="{len(names) - 1}"/>' * exchanges
     return (
         f'<?xml version="1.0" encoding="UTF-8"?><fmiModelDescription {head}>'
-        f'<{"ModelExchange" if exchanges else "CoSimulation"} modelIdentifier="ShortPeriod"/>'
+        '<CoSimulation modelIdentifier="ShortPeriod"/>'
         '<DefaultExperiment startTime="0" stepSize="0.02"/>'
         f"<ModelVariables>{variables}</ModelVariables><ModelStructure>{structure}</ModelStructure>"
         "</fmiModelDescription>"

@@ -225,12 +225,16 @@ def test_a_file_that_is_no_fmu_is_one_sentence(tmp_path: Path) -> None:
         make_fmu(str(tmp_path / "y.fmu"), Aircraft(fmu=NAMES))
 
 
-def test_neither_co_simulation_nor_model_exchange_is_refused(tmp_path: Path) -> None:
-    file = tmp_path / "scheduled.fmu"
+@pytest.mark.parametrize("kind", ["<ScheduledExecution", "<ModelExchange"])
+def test_an_fmu_that_is_not_for_co_simulation_is_refused_with_its_mend(tmp_path: Path, kind: str) -> None:
+    file = tmp_path / "other.fmu"
     with zipfile.ZipFile(file, "w") as archive:
-        archive.writestr("modelDescription.xml", described(3).replace("<CoSim", "<ScheduledExec"))
-    with pytest.raises(UnusableInputError, match=r"scheduled.fmu .*"):
+        archive.writestr("modelDescription.xml", described(3).replace("<CoSimulation", kind))
+    with pytest.raises(UnusableInputError, match=r"other.fmu is for no co-simulation") as refused:
         FmuSimulator(file, NAMES, 15.0)
+    assert "Export it for co-simulation" in str(
+        refused.value.fix if hasattr(refused.value, "fix") else refused.value
+    )
 
 
 def test_an_aircraft_file_without_names_is_told_what_to_add(tmp_path: Path) -> None:
