@@ -7,9 +7,9 @@ from pathlib import Path
 import click
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.cli.options import aircraft_option, json_option, read_aircraft, target_system_option
+from advisor.cli.options import aircraft_option, json_option, read_aircraft
 from advisor.words.printable import printable
-from advisor.words.problems import ConfigurationError, UnusableInputError
+from advisor.words.problems import ConfigurationError
 
 
 @click.group
@@ -20,7 +20,6 @@ def command() -> None:
     Example:
       advisor simulator check jsbsim:c172p --airspeed 50 --height 1000
       advisor simulator check fmu:plane.fmu --aircraft my-aircraft.yaml
-      advisor simulator fly flight.tlog --master tcp:127.0.0.1:5760
     """
 
 
@@ -69,41 +68,6 @@ def check(
             click.echo(printable(line))
     if check.fault is not None:
         raise check.fault.refuse(check.simulator)
-
-
-@command.command
-@click.argument("log", type=click.Path(exists=True, dir_okay=False, path_type=Path))
-@click.option("--master", required=True, metavar="CONN", help="Connection of the simulated vehicle.")
-@target_system_option
-def fly(log: Path, master: str, target_system: int | None) -> None:
-    """Replay the sticks of a flight into a simulation of ArduPilot or PX4, as an override of its receiver.
-
-    The log's RC_CHANNELS are sent at their recorded times. Nothing is sent to a vehicle without a parameter
-    that only a simulation has. First fly the simulation straight and level in MANUAL, and record it. The log
-    of the simulation then serves as --simulator log:FILE.
-
-    \b
-    Example:
-      advisor simulator fly flight.tlog --master tcp:127.0.0.1:5760
-    """
-    from advisor.analysis.sticks import sticks_of
-    from advisor.mavlink.link.link import Link
-    from advisor.mavlink.link.stick_replay import StickReplay
-
-    recorded = sticks_of(log)
-    replay = StickReplay(recorded.t, recorded.pulses)
-    click.echo(f"{recorded.t[-1]:.0f} s of sticks go to {printable(master)}; Ctrl-C ends them.", err=True)
-    with Link(master, target_system=target_system, talkers=[replay]) as link:
-        while not replay.done:
-            link.read(0.02)
-            for notice in link.take_notices():
-                click.echo(printable(notice), err=True)
-    if replay.refused:
-        raise UnusableInputError(
-            "no_simulation",
-            f"The vehicle on {master} has no parameter of a simulation: nothing was sent.",
-            "Start ArduPilot's or PX4's software in the loop on this connection.",
-        )
 
 
 def _speed_of(aircraft: Aircraft) -> float:
