@@ -48,17 +48,11 @@ def parse_formats(text: str) -> tuple[str, ...]:
 
 
 def write_formats(data: "Dataset", folder: Path, formats: Sequence[str]) -> tuple[FailedPart, ...]:
-    """Write a dataset in several formats into a folder. A format that PlotJuggler reads gets a layout.
-    Return the formats whose writer failed."""
-    from advisor.exports.flights.plotjuggler import write_layouts
-
+    """Write a dataset in several formats into a folder; return the formats whose writer failed."""
     failed = []
     for name in formats:
         module, writer = WRITERS[name]
         write = getattr(import_module(f"advisor.exports.flights.{module}"), writer)
         made = attempt(f"export {name}", partial(write, data, folder))
         failed += [made] if isinstance(made, FailedPart) else []
-    readable = [name for name in formats if name in ("csv", "parquet")]
-    if readable:
-        write_layouts(data, folder, readable[0])
     return tuple(failed)

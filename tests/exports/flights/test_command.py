@@ -91,15 +91,6 @@ def test_a_place_below_a_file_is_refused_in_one_sentence(
     assert "Traceback" not in run.stderr
 
 
-def test_the_input_is_not_written_over(exported: Exported, advisor: Advisor, tmp_path: Path) -> None:
-    log = tmp_path / "flight.tlog"
-    log.write_bytes(exported.log.read_bytes())
-    run = advisor("export", log, "--cut", "1", "-o", log)
-    assert run.returncode == 2
-    assert "is an input of this command" in run.stderr
-    assert log.read_bytes() == exported.log.read_bytes()
-
-
 def test_a_disk_that_is_full_in_the_middle_leaves_nothing_behind(
     exported: Exported, advisor: Advisor, tmp_path: Path
 ) -> None:

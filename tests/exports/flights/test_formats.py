@@ -5,7 +5,6 @@ import json
 import math
 import shutil
 import subprocess
-from xml.etree import ElementTree
 
 import numpy as np
 import pyarrow.parquet as pq
@@ -14,7 +13,6 @@ from mcap.reader import make_reader
 from scipy.io import loadmat
 
 from advisor.aircraft.reference import PARAMETERS
-from advisor.exports.flights.plotjuggler import layout
 from tests.exports.flights.conftest import Exported
 
 
@@ -180,26 +178,6 @@ def test_the_samples_of_a_manoeuvre_stand_in_the_whole_channel(exported: Exporte
             whole = power_on.channels[name].cut(channel.t[0], channel.t[-1])
             np.testing.assert_array_equal(whole.t, channel.t)
             np.testing.assert_array_equal(whole.y, channel.y)
-
-
-def test_the_layout_for_plotjuggler_draws_columns_that_the_grid_has_over_its_column_of_times(
-    exported: Exported,
-) -> None:
-    root = ElementTree.parse(exported.folder / "record_1" / "plotjuggler.xml").getroot()
-    file = root.find("previouslyLoaded_Datafiles/fileInfo")
-    assert file is not None
-    with (exported.folder / "record_1" / file.attrib["filename"]).open(encoding="utf-8") as grid:
-        columns = grid.readline().strip().split(",")
-    curves = [curve.attrib["name"] for curve in root.iter("curve")]
-    assert {"elevator", "alpha", "q", "airspeed"} <= set(curves) <= set(columns)
-    assert [p.attrib["time_axis"] for p in file.iter("parameters")] == [columns[0]]
-
-
-def test_a_layout_beside_parquet_alone_loads_the_parquet_grid(exported: Exported) -> None:
-    file = layout(exported.data.recordings[0], "parquet").find("previouslyLoaded_Datafiles/fileInfo")
-    assert file is not None
-    assert file.attrib["filename"] == "grid.parquet"
-    assert [d.attrib["prevTimestamp"] for d in file.iter("default")] == ["t_boot_s"]
 
 
 def test_every_parameter_of_the_model_has_a_row_and_a_column_of_covariance(exported: Exported) -> None:
