@@ -17,9 +17,7 @@ GATE = '#!/bin/sh\necho "3 of 4 hold"\nexit {code}\n'
     ("tests", "gate", "passes"),
     [(0, 0, True), (0, None, True), (0, 1, False), (2, 0, False), (2, None, False)],
 )
-def test_both_the_tests_and_the_gate_decide(
-    tmp_path: Path, tests: int, gate: int | None, passes: bool
-) -> None:
+def test_both_the_tests_and_the_gate_decide(tmp_path, tests, gate, passes):
     checkout, programs = tmp_path / "checkout", tmp_path / "programs"
     (checkout / ".ci").mkdir(parents=True)
     shutil.copy(ROOT / ".ci" / "run", checkout / ".ci" / "run")

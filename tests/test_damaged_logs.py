@@ -120,9 +120,7 @@ hardly = settings(thoroughly, max_examples=max(2, CASES // 20))
 @pytest.mark.parametrize("kind", ["bin", "ulg", "tlog"])
 @thoroughly
 @given(seed=seeds, damages=any_damage)
-def test_a_damaged_log_is_read_or_refused_in_a_sentence(
-    kind: str, tmp_path: Path, seed: int, damages: list[int]
-) -> None:
+def test_a_damaged_log_is_read_or_refused_in_a_sentence(kind, tmp_path, seed, damages):
     path = tmp_path / f"flight.{kind}"
     path.write_bytes(damaged(kind, seed, damages))
     found = read(path)

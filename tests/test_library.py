@@ -32,9 +32,7 @@ def flight() -> library.Flight:
 
 
 @pytest.mark.study
-def test_the_example_of_the_page_runs_in_the_folder_of_the_project(
-    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_the_example_of_the_page_runs_in_the_folder_of_the_project(monkeypatch, capsys):
     page = (ROOT / "docs" / "how-to" / "notebook.md").read_text(encoding="utf-8")
     (example,) = re.findall(r"```python\n(.*?)```", page, re.DOTALL)
     monkeypatch.chdir(ROOT)
@@ -80,9 +78,7 @@ def test_find_gives_the_manoeuvres_that_analyze_lists(flight: library.Flight, ad
 
 
 @pytest.mark.usefixtures("recorded_analyses")
-def test_judge_gives_the_numbers_of_analyze(
-    flight: library.Flight, judged: CampaignState, advisor: Advisor, tmp_path: Path
-) -> None:
+def test_judge_gives_the_numbers_of_analyze(flight, judged, advisor, tmp_path):
     aircraft = tmp_path / "aircraft.yaml"
     aircraft.write_text("elevator: {lag_s: 0.02}\n")
     told = json.loads(advisor("analyze", flight.log, "--aircraft", aircraft, "--json").stdout)
@@ -94,9 +90,7 @@ def test_judge_gives_the_numbers_of_analyze(
     assert library.read(flight.log, aircraft).aircraft == KNOWN
 
 
-def test_with_the_instruments_of_all_manoeuvres_estimate_gives_what_judge_has_for_each(
-    flight: library.Flight, judged: CampaignState
-) -> None:
+def test_with_the_instruments_of_all_manoeuvres_estimate_gives_what_judge_has_for_each(flight, judged):
     assert judged.model is not None
     assert judged.model.found is not None
     as_told = with_found(flight.aircraft, judged.model.found)
@@ -125,9 +119,7 @@ def test_diagnose_gives_the_verdict_of_gap(flight: library.Flight, advisor: Advi
     assert [cause.effect for cause in found.causes] == [cause["effect"] for cause in told["causes"]]
 
 
-def test_diagnose_compares_with_the_simulator_that_the_aircraft_file_names(
-    flight: library.Flight, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_diagnose_compares_with_the_simulator_that_the_aircraft_file_names(flight, monkeypatch):
     asked: list[object] = []
     compared = SimpleNamespace(diagnosis="compared")
     monkeypatch.setattr(gap, "named_simulator", lambda aircraft, _: asked.append(aircraft.simulator))

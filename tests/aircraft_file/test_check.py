@@ -45,9 +45,7 @@ def test_a_log_that_names_the_elevator_stands_in_for_the_key(advisor: Advisor, t
     assert "elevator.output" not in _lacking(advisor, tmp_path, "", "--log", LOG)
 
 
-def test_outputs_of_aileron_and_rudder_are_missing_where_no_parameter_names_surfaces(
-    advisor: Advisor, tmp_path: Path
-) -> None:
+def test_outputs_of_aileron_and_rudder_are_missing_where_no_parameter_names_surfaces(advisor, tmp_path):
     text, nameless = "elevator: {output: 2}", LOG.parent / "u_base.ulg"
     assert {"aileron.output", "rudder.output"} <= _lacking(advisor, tmp_path, text, "--log", nameless).keys()
     assert "aileron.output" not in _lacking(advisor, tmp_path, text, "--log", LOG)
@@ -87,9 +85,7 @@ def test_the_example_of_every_key_is_read(key) -> None:
     parse_aircraft(content)
 
 
-def test_the_servos_of_aileron_and_rudder_are_missing_where_the_log_has_these_surfaces(
-    advisor: Advisor, tmp_path: Path
-) -> None:
+def test_the_servos_of_aileron_and_rudder_are_missing_where_the_log_has_these_surfaces(advisor, tmp_path):
     lacking = _lacking(advisor, tmp_path, "", "--log", LOG.parent / "base.bin")
     assert {"aileron.lag_s", "rudder.calibration"} <= lacking.keys()
     given = "aileron: {output: 1, calibration: [[1000, 25], [2000, -25]], lag_s: 0.1}"

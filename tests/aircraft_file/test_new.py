@@ -27,9 +27,7 @@ LOGS = Path(__file__).parents[2] / "logs"
 
 
 @pytest.mark.parametrize("log", [CASES / "t_base.tlog", CASES / "base.bin"])
-def test_a_log_tells_the_elevators_output_and_the_air_speed(
-    advisor: Advisor, tmp_path: Path, log: Path
-) -> None:
+def test_a_log_tells_the_elevators_output_and_the_air_speed(advisor, tmp_path, log):
     file = tmp_path / "a.yaml"
     assert advisor("aircraft", "new", "--from", log, "-o", file).returncode == 0
     aircraft = load_aircraft(file)
@@ -37,9 +35,7 @@ def test_a_log_tells_the_elevators_output_and_the_air_speed(
     assert aircraft.reference_airspeed_m_s == pytest.approx(24.0, abs=1.5)
 
 
-def test_the_end_points_of_the_servo_stand_in_the_file_as_an_example(
-    advisor: Advisor, tmp_path: Path
-) -> None:
+def test_the_end_points_of_the_servo_stand_in_the_file_as_an_example(advisor, tmp_path):
     file = tmp_path / "a.yaml"
     advisor("aircraft", "new", "--from", CASES / "t_base.tlog", "-o", file)
     assert "# calibration: [[1100, 25.0], [1500, 0.0], [1900, -25.0]]" in file.read_text()
@@ -103,9 +99,7 @@ def test_answers_make_the_file(advisor: Advisor, tmp_path: Path, answers: list[s
     assert (aircraft.limits.bank_deg, aircraft.limits.alpha_deg) == (30.0, 12.0)
 
 
-def test_several_outputs_have_a_calibration_each(
-    advisor: Advisor, tmp_path: Path, answers: list[str]
-) -> None:
+def test_several_outputs_have_a_calibration_each(advisor, tmp_path, answers):
     answers += ["Wing", "1 2", "1000:-10 2000:10", "1000:10 2000:-10", *[""] * 13]
     assert advisor("aircraft", "new", "-o", tmp_path / "a.yaml").returncode == 0
     outputs = load_aircraft(tmp_path / "a.yaml").elevator.outputs
@@ -130,9 +124,7 @@ def test_an_answer_that_is_wrong_is_asked_again(advisor: Advisor, tmp_path: Path
     assert load_aircraft(tmp_path / "a.yaml").elevator.lag_s == 0.05
 
 
-def test_questions_without_answers_leave_no_file(
-    advisor: Advisor, tmp_path: Path, answers: list[str]
-) -> None:
+def test_questions_without_answers_leave_no_file(advisor, tmp_path, answers):
     run = advisor("aircraft", "new", "-o", tmp_path / "a.yaml")
     assert run.returncode == 2
     assert "advisor aircraft new --from LOG" in run.stderr
@@ -185,9 +177,7 @@ def test_a_log_tells_the_outputs_of_aileron_and_rudder(advisor: Advisor, tmp_pat
     assert "# Output 1 by SERVOn_MIN/TRIM/MAX: 1100/1500/1900 us." in file.read_text()
 
 
-def test_a_blank_file_names_the_keys_of_roll_and_yaw_and_their_signs(
-    advisor: Advisor, tmp_path: Path
-) -> None:
+def test_a_blank_file_names_the_keys_of_roll_and_yaw_and_their_signs(advisor, tmp_path):
     advisor("aircraft", "new", "--blank", "-o", tmp_path / "a.yaml")
     text = " ".join((tmp_path / "a.yaml").read_text().replace("#", "").split())
     for key in ("aileron: ", "rudder: ", "beta: ", "span_m: ", "ixx_kg_m2: ", "L_delta_a: "):

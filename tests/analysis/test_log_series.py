@@ -128,9 +128,7 @@ def test_a_file_given_twice_and_a_copy_count_once(first: Path, tmp_path: Path, c
     assert np.array_equal(spread(followed(first, again)), spread(followed(first)))
 
 
-def test_two_stations_that_lose_differently_by_clocks_of_their_own_count_once(
-    first: Path, tmp_path: Path
-) -> None:
+def test_two_stations_that_lose_differently_by_clocks_of_their_own_count_once(first, tmp_path):
     stations = []
     for number, loss in enumerate((0.02, 0.05)):
         path = tmp_path / f"station-{number}.tlog"
@@ -209,9 +207,7 @@ def test_decisions_by_hand_stay_with_their_log(first: Path, second: Path) -> Non
     assert [r.text for r in campaign.engineer.decided.on_flight(1).excluded] == ["stick not free"]
 
 
-def test_the_document_of_several_logs_says_what_is_of_which(
-    first: Path, second: Path, run: Callable[..., Ended]
-) -> None:
+def test_the_document_of_several_logs_says_what_is_of_which(first, second, run):
     result = run("analyze", first, second, "--json")
     document = result.document
     assert result.exit_code == 0
@@ -228,9 +224,7 @@ def test_the_document_of_one_log_has_no_list_of_logs(first: Path, run: Callable[
     assert "log" not in document["maneuvers"][0]
 
 
-def test_a_log_that_cannot_serve_is_named_and_the_others_count(
-    first: Path, tmp_path: Path, run: Callable[..., Ended]
-) -> None:
+def test_a_log_that_cannot_serve_is_named_and_the_others_count(first, tmp_path, run):
     broken = tmp_path / "broken.tlog"
     broken.write_bytes(b"no log at all" * 100)
     result = run("analyze", first, broken, tmp_path / "missing.tlog", "--json")
@@ -267,18 +261,14 @@ def test_when_no_log_can_serve_all_problems_are_told(tmp_path: Path, run: Callab
     assert len(document["problems"]) == 2
 
 
-def test_a_mark_of_the_command_line_needs_a_single_log(
-    first: Path, second: Path, run: Callable[..., Ended]
-) -> None:
+def test_a_mark_of_the_command_line_needs_a_single_log(first, second, run):
     for command in ("analyze", "replay"):
         result = run(command, first, second, "--maneuver", "+1:+9")
         assert result.exit_code == 2
         assert "LOG.maneuvers.yaml" in result.stderr
 
 
-def test_the_log_of_another_kind_of_autopilot_is_refused_by_name(
-    first: Path, run: Callable[..., Ended]
-) -> None:
+def test_the_log_of_another_kind_of_autopilot_is_refused_by_name(first, run):
     document = run("analyze", first, CASES / "u_base.ulg", "--json").document
     assert [p["code"] for p in document["problems"]] == ["other_vehicle"]
 

@@ -52,9 +52,7 @@ def test_a_mark_written_by_hand_needs_no_number_of_the_power_on(tmp_path: Path) 
     assert (mark.start_s, mark.end_s, mark.boot) == (12.0, 24.5, None)
 
 
-def test_a_failure_while_writing_leaves_the_old_file_and_nothing_else(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_failure_while_writing_leaves_the_old_file_and_nothing_else(tmp_path, monkeypatch):
     log = tmp_path / "flight.tlog"
     write_by_hand(log, DECIDED)
     before = path_beside(log).read_bytes()
@@ -68,9 +66,7 @@ def test_a_failure_while_writing_leaves_the_old_file_and_nothing_else(
     assert [path.name for path in tmp_path.iterdir()] == ["flight.maneuvers.yaml"]
 
 
-def test_it_is_on_the_disk_before_it_takes_the_place_of_the_old_one(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_it_is_on_the_disk_before_it_takes_the_place_of_the_old_one(tmp_path, monkeypatch):
     done: list[str] = []
     replaced = Path.replace
     monkeypatch.setattr(os, "fsync", lambda descriptor: done.append("on the disk"))

@@ -103,9 +103,7 @@ async def test_the_report_is_markdown(flights: Path) -> None:
         ("gap", {"logs": ["a.tlog"], "aircraft": "runs.yaml"}, "runs a program"),
     ],
 )
-async def test_what_is_not_allowed_is_refused_in_a_sentence(
-    flights: Path, tool: str, arguments: dict[str, Any], why: str
-) -> None:
+async def test_what_is_not_allowed_is_refused_in_a_sentence(flights, tool, arguments, why):
     calls = Noted({})
     async with client_of(flights, calls) as client:
         told = await client.call_tool(tool, arguments)

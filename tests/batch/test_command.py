@@ -80,9 +80,7 @@ def test_a_stored_result_of_another_shape_is_computed_again(advisor: Advisor, tm
 
 
 @pytest.mark.usefixtures("in_this_process")
-def test_rows_have_the_numbers_of_analyze_and_failures_their_reason(
-    folder: Path, advisor: Advisor, tmp_path: Path
-) -> None:
+def test_rows_have_the_numbers_of_analyze_and_failures_their_reason(folder, advisor, tmp_path):
     run = advisor("batch", folder, "-o", tmp_path / "out", "--workers", 1)
     assert run.returncode == 0, run.stderr
     assert "is a copy of" in run.stderr
@@ -103,9 +101,7 @@ def test_rows_have_the_numbers_of_analyze_and_failures_their_reason(
 
 
 @pytest.mark.study
-def test_a_centre_of_gravity_that_has_moved_is_told_since_its_first_flight(
-    advisor: Advisor, tmp_path: Path
-) -> None:
+def test_a_centre_of_gravity_that_has_moved_is_told_since_its_first_flight(advisor, tmp_path):
     for number in range(1, 6):
         aft = {"cg_shift": {"aft_m": 0.015, "at_s": 0.0}} if number >= 4 else {}
         noise = Noise(percent=1.0)
@@ -121,9 +117,7 @@ def test_a_centre_of_gravity_that_has_moved_is_told_since_its_first_flight(
 
 
 @pytest.mark.usefixtures("in_this_process")
-def test_the_second_run_analyzes_nothing_and_gives_the_same_tables_and_page(
-    folder: Path, advisor: Advisor, tmp_path: Path
-) -> None:
+def test_the_second_run_analyzes_nothing_and_gives_the_same_tables_and_page(folder, advisor, tmp_path):
     out = tmp_path / "out"
     advisor("batch", folder, "-o", out, "--workers", 1)
     before = {path.name: path.read_bytes() for path in out.iterdir() if path.is_file()}
@@ -170,9 +164,7 @@ def _flown(log: str, system: int) -> Analyzed:
 
 
 @pytest.mark.usefixtures("in_this_process")
-def test_a_disk_that_fills_up_ends_the_batch_with_one_sentence_and_no_half_result(
-    folder: Path, advisor: Advisor, tmp_path: Path
-) -> None:
+def test_a_disk_that_fills_up_ends_the_batch_with_one_sentence_and_no_half_result(folder, advisor, tmp_path):
     with files_of_at_most(5_000):
         run = advisor("batch", folder / "flight-11.tlog", "-o", tmp_path / "out", "--workers", 1)
     assert (run.returncode, run.stderr.count("\n")) == (2, 1)
@@ -187,9 +179,7 @@ def test_two_processes_give_the_tables_of_one(folder: Path, advisor: Advisor, tm
     assert_same_tables(tmp_path / "out-1", tmp_path / "out-2")
 
 
-def test_results_that_come_in_another_order_give_the_same_tables(
-    folder: Path, advisor: Advisor, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_results_that_come_in_another_order_give_the_same_tables(folder, advisor, tmp_path, monkeypatch):
     for way in (1, -1):
 
         def run(work: Work, tasks: list[BatchTask], workers: int, way: int = way) -> Results:
@@ -226,9 +216,7 @@ def test_a_result_that_was_damaged_is_made_again(tmp_path: Path) -> None:
 
 
 @pytest.mark.usefixtures("in_this_process")
-def test_a_map_gives_each_log_its_aircraft_and_lists_logs_without_one(
-    folder: Path, advisor: Advisor, tmp_path: Path
-) -> None:
+def test_a_map_gives_each_log_its_aircraft_and_lists_logs_without_one(folder, advisor, tmp_path):
     (tmp_path / "known.yaml").write_text("elevator: {lag_s: 0.02}\n")
     (tmp_path / "fleet.yaml").write_text('"flight-12*": known.yaml\n')
     run = advisor(
@@ -243,9 +231,7 @@ def test_a_map_gives_each_log_its_aircraft_and_lists_logs_without_one(
 
 
 @pytest.mark.usefixtures("in_this_process")
-def test_a_wrong_file_of_marks_is_the_failure_of_its_log_alone(
-    folder: Path, advisor: Advisor, tmp_path: Path
-) -> None:
+def test_a_wrong_file_of_marks_is_the_failure_of_its_log_alone(folder, advisor, tmp_path):
     (folder / "flight-11.maneuvers.yaml").write_text("wings: 2\n")
     run = advisor("batch", folder / "flight-11.tlog", folder / "flight-12.tlog", "-o", tmp_path / "out")
     assert run.returncode == 0
@@ -294,9 +280,7 @@ def test_when_no_log_can_be_used_the_exit_code_is_3(advisor: Advisor, tmp_path: 
     assert "a.tlog is empty" in run.stderr
 
 
-def test_results_below_a_file_are_refused_in_one_sentence(
-    folder: Path, advisor: Advisor, tmp_path: Path
-) -> None:
+def test_results_below_a_file_are_refused_in_one_sentence(folder, advisor, tmp_path):
     (tmp_path / "file").write_text("")
     run = advisor("batch", folder / "flight-11.tlog", "-o", tmp_path / "file" / "out")
     assert run.returncode == 2

@@ -165,9 +165,7 @@ def test_a_document_with_a_problem_of_the_log_is_an_answer(code: int):
 
 
 @pytest.mark.parametrize("command", ["doctor", "analyze", "live"])
-def test_an_error_that_leaves_the_advisor_is_a_failure_with_its_kind(
-    command: str, monkeypatch: pytest.MonkeyPatch
-):
+def test_an_error_that_leaves_the_advisor_is_a_failure_with_its_kind(command, monkeypatch):
     def divide(*_: object, **__: object) -> float:
         raise ZeroDivisionError
 

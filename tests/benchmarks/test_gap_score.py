@@ -37,9 +37,7 @@ def test_an_alarm_is_an_effect_or_an_unknown_where_nothing_is_withheld() -> None
     ("kind", "effects", "share"),
     [("none", {}, 0.5), ("parameters", {}, 0.2), ("outside", {}, 0.1), ("one", {"alpha_lag": {}}, 0.15)],
 )
-def test_the_log_score_is_that_of_the_probability_of_the_truth(
-    kind: str, effects: dict[str, Any], share: float
-) -> None:
+def test_the_log_score_is_that_of_the_probability_of_the_truth(kind, effects, share):
     shares = {"none": 0.5, "parameters": 0.2, "unknown": 0.1, "alpha_lag": 0.15, "gust": 0.05}
     assert log_score(flight(kind, "none", shares, effects=effects)) == pytest.approx(np.log(share))
 

@@ -35,9 +35,7 @@ def moved(before: dict[str, float], after: dict[str, float], allowed: float = 1.
         ("alpha 20 ms later", "alpha", 0.02),
     ],
 )
-def test_a_late_stream_moves_the_stamps_of_its_channels_alone(
-    change: str, channel: str, seconds: float
-) -> None:
+def test_a_late_stream_moves_the_stamps_of_its_channels_alone(change, channel, seconds):
     flown = maneuver()
     (late,) = BY_NAME[change].apply([flown])
     assert {name for name, c in late.channels.items() if not np.array_equal(c.t, flown.channels[name].t)} == {
@@ -56,9 +54,7 @@ def test_a_late_stream_moves_the_stamps_of_its_channels_alone(
         ("gyro bias - .1 deg/s", "q", 20.0 - np.radians(0.1)),
     ],
 )
-def test_a_wrong_reading_changes_the_values_of_its_channel_alone(
-    change: str, channel: str, value: float
-) -> None:
+def test_a_wrong_reading_changes_the_values_of_its_channel_alone(change, channel, value):
     (read,) = BY_NAME[change].apply([maneuver()])
     assert {name for name, c in read.channels.items() if not np.all(c.y == 20.0)} == {channel}
     assert np.allclose(read.channels[channel].y, value)

@@ -24,9 +24,7 @@ def test_comments_and_prompts_are_no_part_of_a_command(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(("page", "line"), COMMANDS)
-def test_the_program_takes_the_command_of_a_page(
-    page: str, line: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_the_program_takes_the_command_of_a_page(page, line, tmp_path, monkeypatch):
     for name in NAMED:
         (tmp_path / name).parent.mkdir(exist_ok=True)
         (tmp_path / name).touch()

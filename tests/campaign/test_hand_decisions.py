@@ -61,9 +61,7 @@ def test_a_mark_on_the_command_line_is_judged_like_any_other(advisor: Advisor, l
     assert other["closed_by"] == "mode change"
 
 
-def test_a_stretch_in_which_nothing_happens_is_refused_and_says_what_is_missing(
-    advisor: Advisor, log: Path
-) -> None:
+def test_a_stretch_in_which_nothing_happens_is_refused_and_says_what_is_missing(advisor, log):
     first = analyzed(advisor, log, "--maneuver", "+1:+6")["maneuvers"][0]
     assert first["closed_by"] == "marked by hand"
     assert first["verdict"] == "rejected"
@@ -83,9 +81,7 @@ WRONG = {
 
 @pytest.mark.parametrize("text", WRONG)
 @pytest.mark.parametrize("command", ["analyze", "gap", "replay"])
-def test_a_wrong_form_is_told_in_a_sentence_with_exit_code_2(
-    advisor: Advisor, log: Path, command: str, text: str
-) -> None:
+def test_a_wrong_form_is_told_in_a_sentence_with_exit_code_2(advisor, log, command, text):
     result = advisor(command, log, f"--maneuver={text}")
     assert result.returncode == 2
     assert f"--maneuver {text}: " in result.stderr
@@ -98,9 +94,7 @@ def test_two_marks_that_overlap_are_told_with_exit_code_2(advisor: Advisor, log:
     assert "--maneuver +7:+9 overlaps --maneuver +1:+8" in result.stderr
 
 
-def test_a_mark_in_the_file_gives_way_to_one_on_the_command_line_and_that_is_told(
-    advisor: Advisor, log: Path
-) -> None:
+def test_a_mark_in_the_file_gives_way_to_one_on_the_command_line_and_that_is_told(advisor, log):
     write_by_hand(log, ByHand(marks=(Mark(25.0, 32.0, 0),)))
     told = advisor("analyze", log, "--maneuver", "+4:+10").stdout
     assert "note: The mark from 0:25.0 to 0:32.0 is left out" in told.replace("\n", " ")
@@ -175,9 +169,7 @@ def test_the_diagnosis_reads_them_and_says_what_is_left_out(log: Path) -> None:
 
 
 @pytest.mark.parametrize("command", ["analyze", "gap", "replay"])
-def test_a_file_that_cannot_be_read_is_told_with_exit_code_2(
-    advisor: Advisor, log: Path, command: str
-) -> None:
+def test_a_file_that_cannot_be_read_is_told_with_exit_code_2(advisor, log, command):
     log.with_suffix(".maneuvers.yaml").write_text("maneuvers: [", encoding="utf-8")
     result = advisor(command, log)
     assert result.returncode == 2

@@ -59,18 +59,14 @@ def states() -> tuple[CampaignState, CampaignState]:
         return before, campaign.state
 
 
-def test_during_the_flight_the_newest_accepted_manoeuvres_are_estimated_together(
-    states: tuple[CampaignState, CampaignState],
-) -> None:
+def test_during_the_flight_the_newest_accepted_manoeuvres_are_estimated_together(states):
     flying, _ = states
     assert flying.estimate_from == numbers(flying)[-2:] != numbers(flying)
     assert flying.model is not None
     np.testing.assert_array_equal(flying.model.theta, joint(flying).theta)
 
 
-def test_at_the_end_all_accepted_manoeuvres_are_estimated_together(
-    states: tuple[CampaignState, CampaignState],
-) -> None:
+def test_at_the_end_all_accepted_manoeuvres_are_estimated_together(states):
     _, ended = states
     assert ended.estimate_from == numbers(ended)
     assert ended.model is not None
@@ -85,9 +81,7 @@ def test_a_joint_estimate_that_was_asked_for_is_kept(states: tuple[CampaignState
     assert together.estimate([replace(maneuvers[0]), maneuvers[1]]) is not first
 
 
-def test_a_further_manoeuvre_continues_the_fit_of_the_earlier_ones_on_its_only_hill(
-    states: tuple[CampaignState, CampaignState], monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_further_manoeuvre_continues_the_fit_of_the_earlier_ones_on_its_only_hill(states, monkeypatch):
     maneuvers = [judged.maneuver for judged in states[1].maneuvers[:2]]
     anew = estimate_jointly(maneuvers, Aircraft())
     monkeypatch.setattr(joint_estimate, "fit_jointly", fit_jointly)
@@ -100,9 +94,7 @@ def test_a_further_manoeuvre_continues_the_fit_of_the_earlier_ones_on_its_only_h
     assert np.all(np.abs(continued.theta - anew.theta) <= 0.03 * anew.std_cr)
 
 
-def test_the_estimate_for_the_lag_comes_only_where_the_manoeuvres_tell_a_lag_to_a_tenth(
-    states: tuple[CampaignState, CampaignState],
-) -> None:
+def test_the_estimate_for_the_lag_comes_only_where_the_manoeuvres_tell_a_lag_to_a_tenth(states):
     maneuvers = [judged.maneuver for judged in states[1].maneuvers[:2]]
     open_ = Together(Aircraft())
     assert open_.of_lag(maneuvers) is None
@@ -158,9 +150,7 @@ def asked_for_a_lag(
 
 
 @pytest.mark.parametrize("more", [0, 1])
-def test_only_a_fit_of_as_few_manoeuvres_as_in_flight_outlasts_its_estimate(
-    more: int, states: tuple[CampaignState, CampaignState], monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_only_a_fit_of_as_few_manoeuvres_as_in_flight_outlasts_its_estimate(more, states, monkeypatch):
     class Made(SimpleNamespace):
         """A fit of which nothing but its end is asked; unlike its base class it can be watched."""
 
@@ -177,16 +167,12 @@ def test_only_a_fit_of_as_few_manoeuvres_as_in_flight_outlasts_its_estimate(
     assert (fits[0]() is None) is (more > 0)
 
 
-def test_after_a_group_that_tells_no_lag_the_next_whole_group_is_asked(
-    states: tuple[CampaignState, CampaignState], monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_after_a_group_that_tells_no_lag_the_next_whole_group_is_asked(states, monkeypatch):
     asked = asked_for_a_lag(False, 2 * NEWEST + 1, states[0].maneuvers[0].maneuver, monkeypatch)
     first = [list(range(1, k + 1)) for k in range(1, NEWEST + 1)]
     assert asked == [*first, list(range(NEWEST + 1, 2 * NEWEST + 1))]
 
 
-def test_after_a_group_that_tells_a_lag_every_manoeuvre_is_asked_with_its_forerunners(
-    states: tuple[CampaignState, CampaignState], monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_after_a_group_that_tells_a_lag_every_manoeuvre_is_asked_with_its_forerunners(states, monkeypatch):
     asked = asked_for_a_lag(True, NEWEST + 2, states[0].maneuvers[0].maneuver, monkeypatch)
     assert asked[NEWEST:] == [list(range(2, NEWEST + 2)), list(range(3, NEWEST + 3))]

@@ -43,9 +43,7 @@ BAD: dict[str, tuple[Callable[[Path], object], str]] = {
 
 
 @pytest.mark.parametrize("kind", BAD)
-def test_unusable_input_is_told_in_a_sentence_with_exit_code_3(
-    kind: str, advisor: Advisor, tmp_path: Path
-) -> None:
+def test_unusable_input_is_told_in_a_sentence_with_exit_code_3(kind, advisor, tmp_path):
     make, expected = BAD[kind]
     log = tmp_path / "flight.tlog"
     make(log)
@@ -57,9 +55,7 @@ def test_unusable_input_is_told_in_a_sentence_with_exit_code_3(
 
 
 @pytest.mark.parametrize("kind", BAD)
-def test_with_json_the_document_still_comes_and_names_the_problem(
-    kind: str, advisor: Advisor, tmp_path: Path
-) -> None:
+def test_with_json_the_document_still_comes_and_names_the_problem(kind, advisor, tmp_path):
     make, _ = BAD[kind]
     log = tmp_path / "flight.tlog"
     make(log)

@@ -128,9 +128,7 @@ def test_batch_runs_no_file_of_the_current_folder(started: Callable[..., Command
     assert (tmp_path / "results").exists()
 
 
-def test_a_simulator_that_the_user_names_replaces_no_module_of_python(
-    started: Callable[..., Command],
-) -> None:
+def test_a_simulator_that_the_user_names_replaces_no_module_of_python(started):
     log = recorded("linear", 1.0, maneuvers=TWO[:1])
     command = started("gap", log, "--simulator", "python:nowhere_at_all:make")
     assert command.process.wait(60.0) == 2
@@ -161,9 +159,7 @@ def test_a_page_of_serve_runs_no_file_of_the_current_folder(started: Callable[..
     assert command.ran == []
 
 
-def test_the_settings_of_numba_in_the_current_folder_do_not_say_whence_machine_code_is_loaded(
-    folder: Path,
-) -> None:
+def test_the_settings_of_numba_in_the_current_folder_do_not_say_whence_machine_code_is_loaded(folder):
     code = "import advisor.process.compiled, numba; print(repr(numba.config.CACHE_DIR)); import yaml"
     done = subprocess.run(
         [sys.executable, "-P", "-W", "ignore", "-c", code],

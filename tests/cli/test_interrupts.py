@@ -95,9 +95,7 @@ def test_ctrl_c_at_a_random_moment_ends_in_one_sentence(command: str, times: int
 @pytest.mark.parametrize(
     ("number", "code"), [pytest.param(signal.SIGINT, 130, marks=pytest.mark.study), (signal.SIGTERM, 143)]
 )
-def test_a_signal_leaves_a_whole_recording_and_says_where(
-    number: signal.Signals, code: int, tmp_path: Path
-) -> None:
+def test_a_signal_leaves_a_whole_recording_and_says_where(number, code, tmp_path):
     port, recording = free_port(), tmp_path / "flight.tlog"
     fly = [sys.executable, "-m", "sim", "fly", "--master", f"udpout:127.0.0.1:{port}"]
     quiet = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}

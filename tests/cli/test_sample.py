@@ -18,9 +18,7 @@ def test_the_sample_is_written_with_its_aircraft_file(advisor: Advisor, tmp_path
     assert load_aircraft(tmp_path / "trial" / "arduplane-calm.yaml").elevator.output == 2
 
 
-def test_the_commands_that_are_printed_name_the_files_that_were_written(
-    advisor: Advisor, tmp_path: Path
-) -> None:
+def test_the_commands_that_are_printed_name_the_files_that_were_written(advisor, tmp_path):
     folder = tmp_path / "a trial"
     told = advisor("sample", folder).stdout.splitlines()
     printed = [shlex.split(line) for line in told if line.startswith("  advisor ")]

@@ -38,9 +38,7 @@ def hostile(folder: Path) -> Path:
 
 @pytest.mark.usefixtures("recorded_analyses")
 @pytest.mark.parametrize("command", [["analyze"], ["analyze", "--all"], ["doctor"], ["replay"], ["gap"]])
-def test_no_control_character_of_a_log_reaches_the_terminal(
-    command: list[str], advisor: Advisor, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_no_control_character_of_a_log_reaches_the_terminal(command, advisor, tmp_path, monkeypatch):
     monkeypatch.setenv("HEADLESS", "1")
     log = hostile(tmp_path)
     assert sum(len(columns) for batch in read_tlog(log) for columns in batch) > 1000

@@ -1,7 +1,6 @@
 """What is no regular file is refused before anything waits for it or reads without end."""
 
 import os
-from pathlib import Path
 
 import pytest
 
@@ -10,9 +9,7 @@ from tests.conftest import Advisor
 
 @pytest.mark.parametrize("command", ["analyze", "doctor", "gap", "replay"])
 @pytest.mark.parametrize("what", ["pipe", "folder", "device"])
-def test_what_is_no_file_is_one_sentence_and_exit_code_3(
-    command: str, what: str, advisor: Advisor, tmp_path: Path
-) -> None:
+def test_what_is_no_file_is_one_sentence_and_exit_code_3(command, what, advisor, tmp_path):
     place = tmp_path / "flight.tlog"
     if what == "pipe":
         os.mkfifo(place)

@@ -30,9 +30,7 @@ def rng() -> np.random.Generator:
 
 
 @pytest.mark.parametrize("parameter", ["Z_alpha", "M_alpha", "M_delta_e", "M_q"])
-def test_a_loss_is_suspected_after_one_manoeuvre_and_confirmed_after_two(
-    rng: np.random.Generator, parameter: str
-) -> None:
+def test_a_loss_is_suspected_after_one_manoeuvre_and_confirmed_after_two(rng, parameter):
     less = with_change(parameter, 0.85)
     history = flown(rng, THETA, THETA, THETA, less, less)
     first, second = find_change(history[:4]), find_change(history)
@@ -51,9 +49,7 @@ def test_noise_alone_is_no_change(rng: np.random.Generator) -> None:
     assert not any(alarms)
 
 
-def test_a_poor_manoeuvre_is_forgotten_when_the_next_is_like_the_earlier_ones(
-    rng: np.random.Generator,
-) -> None:
+def test_a_poor_manoeuvre_is_forgotten_when_the_next_is_like_the_earlier_ones(rng):
     poor = THETA * rng.normal(1.0, 0.2, 8)
     history = flown(rng, THETA, THETA, THETA, poor, THETA)
     suspected = find_change(history[:4])
@@ -87,9 +83,7 @@ def test_a_change_of_a_few_per_cent_is_not_worth_a_warning(rng: np.random.Genera
         ((0, -1, 0, 1, 0, 1), "scale of the pitch rate"),
     ],
 )
-def test_the_simplest_cause_is_named(
-    rng: np.random.Generator, powers: tuple[int, ...], looks_like: str
-) -> None:
+def test_the_simplest_cause_is_named(rng, powers, looks_like):
     one_plus = np.array([0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0])
     exponents = np.array([0, *powers[:3], 0, *powers[3:]], float)
     after = (THETA + one_plus) * 0.8**exponents - one_plus
@@ -208,9 +202,7 @@ SIGMA_PERCENT = 2.0 * np.sqrt(1 / 3 + 1 / 2)
 
 
 @pytest.mark.parametrize(("sigmas", "found"), [(5.0, False), (7.0, True)])
-def test_five_standard_deviations_of_one_derivative_are_noise_and_seven_are_not(
-    sigmas: float, found: bool
-) -> None:
+def test_five_standard_deviations_of_one_derivative_are_noise_and_seven_are_not(sigmas, found):
     moved = {"M_q": 1.0 + 0.01 * sigmas * SIGMA_PERCENT}
     assert (find_change(exactly(2.0, moved, moved)) is not None) is found
 

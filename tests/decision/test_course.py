@@ -28,9 +28,7 @@ def test_decisions_with_a_course_are_those_without(history: list[CandidateManeuv
 
 
 @pytest.mark.parametrize("rule", ["information", "continuous"])
-def test_excluding_an_earlier_manoeuvre_decides_all_that_followed_again(
-    history: list[CandidateManeuver], rule: Rule
-) -> None:
+def test_excluding_an_earlier_manoeuvre_decides_all_that_followed_again(history, rule):
     plan = CampaignPlan(rule=rule)
     course = CriterionCourse(plan)
     before = flight_test(history, plan, course=course)

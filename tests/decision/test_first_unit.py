@@ -24,9 +24,7 @@ QUICK = replace(PITCH, theta=4.0 * PITCH.theta)
         ("rudder", {"N_beta": 4.0}, 1.6),
     ],
 )
-def test_the_model_of_the_file_times_the_first_input(
-    control: str, model: dict[str, float], unit_s: float
-) -> None:
+def test_the_model_of_the_file_times_the_first_input(control, model, unit_s):
     assert first_unit_s(control, Aircraft(model=model)) == unit_s
 
 

@@ -100,9 +100,7 @@ def test_a_needed_channel_that_is_missing_is_the_one_reason() -> None:
     ("closed_by", "last", "broken_off"),
     [("gap", 0.1, True), ("gap", 0.0, False), ("quiet", 0.1, False), ("end of log", 0.1, True)],
 )
-def test_a_record_is_broken_off_where_something_ends_it_away_from_trim(
-    closed_by: str, last: float, broken_off: bool
-) -> None:
+def test_a_record_is_broken_off_where_something_ends_it_away_from_trim(closed_by, last, broken_off):
     span = record(closed_by=closed_by, steps=(*STEPS[:-1], (8.0, last))).span
     assert is_broken_off(span) is broken_off
     assert not is_broken_off(replace(span, steps=()))
@@ -146,9 +144,7 @@ def stuck(samples: int, deg: float = 25.0) -> np.ndarray:
 
 @pytest.mark.parametrize(("samples", "codes"), [(1, []), (2, ["saturation"])])
 @pytest.mark.parametrize("deg", [25.0, -25.0])
-def test_a_control_is_stuck_where_two_samples_lie_at_its_end(
-    samples: int, deg: float, codes: list[str]
-) -> None:
+def test_a_control_is_stuck_where_two_samples_lie_at_its_end(samples, deg, codes):
     assert told(saturated(record(elevator=stuck(samples, deg)), "elevator", None)) == codes
     assert told(saturated(record(elevator=stuck(samples, 0.8 * deg)), "elevator", None)) == []
     assert told(saturated(record(elevator=stuck(samples, 0.8 * deg)), "elevator", (20.0, -20.0))) == codes
@@ -156,9 +152,7 @@ def test_a_control_is_stuck_where_two_samples_lie_at_its_end(
 
 
 @pytest.mark.parametrize(("share", "codes"), [(0.19, ["follows"]), (0.21, [])])
-def test_an_elevator_that_moves_less_than_a_fifth_of_another_control_follows_the_motion(
-    share: float, codes: list[str]
-) -> None:
+def test_an_elevator_that_moves_less_than_a_fifth_of_another_control_follows_the_motion(share, codes):
     both = record(elevator=swing(10.0 * share), aileron=swing(10.0), rudder=swing(2.0))
     reasons = follows_motion(both, "elevator", ("rudder", "aileron"))
     assert told(reasons) == codes

@@ -36,9 +36,7 @@ def of(theta: np.ndarray, std_percent: float = 1.0) -> Estimate:
 
 
 @pytest.mark.parametrize(("pace_rad_s", "believed"), [(0.4, False), (0.6, True), (35.0, True), (45.0, False)])
-def test_a_short_period_lies_between_a_half_and_forty_radians_a_second(
-    pace_rad_s: float, believed: bool
-) -> None:
+def test_a_short_period_lies_between_a_half_and_forty_radians_a_second(pace_rad_s, believed):
     assert is_believable(of(aircraft(pace_rad_s, 0.5))) == believed
 
 
@@ -57,9 +55,7 @@ def test_half_of_the_motion_of_each_output_is_explained(misses: float, believed:
 
 @pytest.mark.parametrize(("std_percent", "believed"), [(28.0, True), (32.0, False)])
 @pytest.mark.parametrize("unsure", [5, 7])
-def test_stiffness_and_effectiveness_are_known_to_three_tenths(
-    unsure: int, std_percent: float, believed: bool
-) -> None:
+def test_stiffness_and_effectiveness_are_known_to_three_tenths(unsure, std_percent, believed):
     std = 0.01 * np.abs(THETA)
     std[unsure] *= std_percent
     assert is_believable(explaining(estimate(covariance=np.diag(std**2)))) == believed

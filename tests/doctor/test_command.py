@@ -45,9 +45,7 @@ def test_a_usable_log_is_told_in_words_verdict_first(advisor: Advisor) -> None:
         ("udpin:127.0.0.1:notaport", 2, "no port"),
     ],
 )
-def test_what_cannot_be_examined_is_refused_in_one_sentence(
-    target: str, code: int, word: str, advisor: Advisor
-) -> None:
+def test_what_cannot_be_examined_is_refused_in_one_sentence(target, code, word, advisor):
     run = advisor("doctor", target)
     assert run.returncode == code
     assert word in run.stderr
@@ -60,9 +58,7 @@ def test_a_silent_link_is_not_usable(advisor: Advisor) -> None:
     assert json.loads(run.stdout)["problems"][0]["code"] == "no_vehicle"
 
 
-def test_before_the_flight_rates_are_asked_for_and_the_elevator_is_found(
-    advisor: Advisor, tmp_path: Path
-) -> None:
+def test_before_the_flight_rates_are_asked_for_and_the_elevator_is_found(advisor, tmp_path):
     port = free_port()
     scenario = tmp_path / "slow.yaml"
     scenario.write_text("rates: {ATTITUDE: 4.0, AOA_SSA: 4.0, SERVO_OUTPUT_RAW: 2.0, HEARTBEAT: 1.0}\n")

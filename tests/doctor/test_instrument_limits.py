@@ -154,9 +154,7 @@ def test_a_message_was_interrupted_where_its_rate_fell_below_six_tenths(lowest_h
         (0.05, 50.0, 0.065, True),
     ],
 )
-def test_a_gap_lasts_half_a_natural_period_and_three_intervals(
-    period_s: float, hz: float, gap_s: float, told: bool
-) -> None:
+def test_a_gap_lasts_half_a_natural_period_and_three_intervals(period_s, hz, gap_s, told):
     assert bool(unsteady(period_s=period_s, hz=hz, largest_gap_s=gap_s)) is told
 
 

@@ -64,8 +64,6 @@ def test_a_link_that_serves_is_flown_on_at_once() -> None:
 
 
 @pytest.mark.parametrize(("limits", "examined"), EVERY)
-def test_every_command_is_one_that_the_advisor_takes(
-    limits: tuple[Limit, ...], examined: ExaminedInput
-) -> None:
+def test_every_command_is_one_that_the_advisor_takes(limits, examined):
     for line in next_commands(_found(*limits), examined):
         taken(line)

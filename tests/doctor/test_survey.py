@@ -160,9 +160,7 @@ def test_another_system_is_not_counted() -> None:
 
 
 @pytest.mark.parametrize(("carrier", "told"), [("telemetry", 0), ("dataflash", 1), ("ulog", 1)])
-def test_a_stretch_without_any_record_is_a_pause_of_a_log_and_a_fault_of_a_link(
-    carrier: Carrier, told: int
-) -> None:
+def test_a_stretch_without_any_record_is_a_pause_of_a_log_and_a_fault_of_a_link(carrier, told):
     t = np.concatenate([np.arange(0.0, 20.0, 0.02), np.arange(43.0, 60.0, 0.02)])
     master = attitude(t)
     survey, arrivals = surveyed([master, aoa(t, among(master, t, t), renewed_hz=20.0)], carrier=carrier)

@@ -1,6 +1,5 @@
 """An export that a fault ends is named, and the other files are written."""
 
-from pathlib import Path
 from typing import Any, NoReturn
 
 import numpy as np
@@ -21,9 +20,7 @@ def fails(*_: object) -> NoReturn:
     raise np.linalg.LinAlgError("Singular matrix")
 
 
-def test_a_format_that_fails_is_named_and_the_next_one_is_written(
-    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
-) -> None:
+def test_a_format_that_fails_is_named_and_the_next_one_is_written(monkeypatch, tmp_path):
     monkeypatch.setattr(mat_file, "write_mat", fails)
     monkeypatch.setattr(mcap_files, "write_mcap", lambda data, folder: (folder / "x.mcap").touch())
     (failed,) = write_formats(NO_DATA, tmp_path, ("mat", "mcap"))
@@ -32,9 +29,7 @@ def test_a_format_that_fails_is_named_and_the_next_one_is_written(
     assert (tmp_path / "x.mcap").exists()
 
 
-def test_a_fault_that_is_none_of_numbers_ends_the_export(
-    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
-) -> None:
+def test_a_fault_that_is_none_of_numbers_ends_the_export(monkeypatch, tmp_path):
     def broken(*_: object) -> NoReturn:
         raise TypeError("no number")
 
@@ -43,9 +38,7 @@ def test_a_fault_that_is_none_of_numbers_ends_the_export(
         write_formats(NO_DATA, tmp_path, ("mat",))
 
 
-def test_a_model_that_cannot_be_written_is_named_and_the_next_one_is_written(
-    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
-) -> None:
+def test_a_model_that_cannot_be_written_is_named_and_the_next_one_is_written(monkeypatch, tmp_path):
     monkeypatch.setattr(matlab_format, "both_axes_text", fails)
     monkeypatch.setattr(ardupilot_format, "parameters_text", lambda _: Exported("SERVO2_RATE 50\n"))
     orders = [order_of(f"matlab:{tmp_path}/model.m"), order_of(f"ardupilot:{tmp_path}/servo.parm")]

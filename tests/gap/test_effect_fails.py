@@ -43,9 +43,7 @@ def test_an_effect_of_roll_and_yaw_whose_fit_fails_is_left_out() -> None:
 
 
 @pytest.mark.parametrize("fails", ["fit", "model"])
-def test_an_effect_of_pitch_whose_fit_or_evidence_fails_is_left_out(
-    monkeypatch: pytest.MonkeyPatch, fails: str
-) -> None:
+def test_an_effect_of_pitch_whose_fit_or_evidence_fails_is_left_out(monkeypatch, fails):
     def fit(problem, point, noise, *_, **__):
         if fails == "fit" and point == "transport_delay":
             raise SINGULAR

@@ -19,7 +19,6 @@ from advisor.gap.axis import comparison
 from advisor.session.diagnosis import GapTask
 from tests.campaign.side_builders import judged
 from tests.campaign.side_builders import state as side_state
-from tests.conftest import Advisor
 from tests.gap.generator import Setup, fly
 
 LOG = Path(__file__).parents[2] / "logs" / "bundled-demo.tlog"
@@ -57,14 +56,7 @@ def failed_parts(document: Mapping[str, Any]) -> list[str]:
 
 
 @EACH
-def test_the_command_answers_with_the_part_that_failed(
-    advisor: Advisor,
-    monkeypatch: pytest.MonkeyPatch,
-    axis: str,
-    module: ModuleType,
-    name: str,
-    fault: Exception,
-) -> None:
+def test_the_command_answers_with_the_part_that_failed(advisor, monkeypatch, axis, module, name, fault):
     break_at(monkeypatch, module, name, fault)
     done = advisor("gap", LOG, "--axis", axis, "--json")
     assert done.returncode == 0

@@ -56,18 +56,14 @@ def diagnosed(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Path, Pat
 
 
 @pytest.mark.study
-def test_the_improved_file_holds_the_effect_and_both_programs_read_it(
-    diagnosed: tuple[Path, Path, Path],
-) -> None:
+def test_the_improved_file_holds_the_effect_and_both_programs_read_it(diagnosed):
     _, _, improved = diagnosed
     effects = load_aircraft(improved).effects
     assert effects["transport_delay"]["delay_s"] == pytest.approx(0.06, abs=0.006)
 
 
 @pytest.mark.study
-def test_flying_the_recorded_inputs_through_the_improved_simulator_shrinks_the_gap(
-    diagnosed: tuple[Path, Path, Path], tmp_path: Path
-) -> None:
+def test_flying_the_recorded_inputs_through_the_improved_simulator_shrinks_the_gap(diagnosed, tmp_path):
     flight, believed, improved = diagnosed
     apart = {}
     for name, aircraft in (("before", believed), ("after", improved)):

@@ -324,9 +324,7 @@ class SlowerSimulator(Flight):
 
 
 @pytest.mark.parametrize("chance", [1.0, 0.4])
-def test_a_simulator_without_its_own_effect_is_as_likely_before_the_flight_as_any_effect(
-    chance,
-):
+def test_a_simulator_without_its_own_effect_is_as_likely_before_the_flight_as_any_effect(chance):
     flight = SlowerSimulator({}, 7.0, chance)
     ways = [r for r in rows_of(flight, stage_of(flight, None, 6), SPREAD) if r.alternative == LAG]
     assert ways[0].terms["prior"] == pytest.approx(np.log(chance * 0.3 / 3))

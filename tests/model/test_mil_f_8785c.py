@@ -34,9 +34,7 @@ BELOW, ABOVE = 1.0 - 1e-9, 1.0 + 1e-9
         (1.0, 2.0, 1.8 * BELOW, "113"),
     ],
 )
-def test_frequency_against_acceleration_sensitivity(
-    cap: float, frequency: float, load: float, levels: str
-) -> None:
+def test_frequency_against_acceleration_sensitivity(cap, frequency, load, levels):
     assert levels_of(0.7, cap, frequency, load) == levels
 
 

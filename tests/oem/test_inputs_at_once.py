@@ -9,7 +9,7 @@ import pytest
 from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft.sensors import Alpha, Beta
 from advisor.decision.axes.influences import carries_coupling
-from advisor.flight.maneuvers.maneuver import InputKind, Maneuver
+from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.flight.maneuvers.sines import between_samples, command_of
 from advisor.model.axes.lateral import LATERAL
 from advisor.oem.axis.estimate import AxisEstimate
@@ -53,9 +53,7 @@ def test_a_sine_between_its_samples_keeps_its_size() -> None:
 
 
 @pytest.mark.parametrize(("kind", "parts"), [("multisine", 4), ("3-2-1-1", 1)])
-def test_sines_alone_have_corners_between_their_samples(
-    kind: InputKind, parts: int, flown: tuple[Body, Maneuver]
-) -> None:
+def test_sines_alone_have_corners_between_their_samples(kind, parts, flown):
     maneuver = replace(flown[1], span=replace(flown[1].span, kind=kind))
     samples = len(maneuver.channels["elevator"])
     assert len(command_of(maneuver, "elevator").t) == parts * (samples - 1) + 1
@@ -80,9 +78,7 @@ def test_the_moment_of_rolling_with_yawing_is_no_term_of_the_user(flown: tuple[B
     assert "M:p*r" not in [x.name for x in found.instruments]
 
 
-def test_a_manoeuvre_of_steps_takes_what_inputs_at_once_have_told_of_its_instruments(
-    flown: tuple[Body, Maneuver],
-) -> None:
+def test_a_manoeuvre_of_steps_takes_what_inputs_at_once_have_told_of_its_instruments(flown):
     told = estimate(flown[1], VANE)
     stepped = replace(flown[1], span=replace(flown[1].span, kind="3-2-1-1"))
     assert isinstance(told, Estimate)

@@ -9,9 +9,7 @@ import pytest
 from advisor.process.atomic_file import write_atomically
 
 
-def test_a_link_under_the_temporary_name_is_not_followed(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_link_under_the_temporary_name_is_not_followed(tmp_path, monkeypatch):
     victim = tmp_path / "victim"
     victim.write_text("as before")
     monkeypatch.setattr(secrets, "token_hex", lambda size: "foreseen")

@@ -42,18 +42,14 @@ def test_a_run_that_was_stopped_is_begun_again(said: list[str]) -> None:
     assert len(said) == 2
 
 
-def test_where_nothing_can_be_kept_every_run_says_so(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, said: list[str]
-) -> None:
+def test_where_nothing_can_be_kept_every_run_says_so(tmp_path, monkeypatch, said):
     (tmp_path / "a file").touch()
     monkeypatch.setattr("advisor.process.first_run._writable", lambda folder: False)
     compile_once(said.append, {"one": lambda: None})
     assert "Set NUMBA_CACHE_DIR" in said[-1]
 
 
-def test_nothing_is_compiled_where_the_compiler_is_off(
-    said: list[str], monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_nothing_is_compiled_where_the_compiler_is_off(said, monkeypatch):
     monkeypatch.setenv("NUMBA_DISABLE_JIT", "1")
     compile_once(said.append)
     assert said == []

@@ -53,9 +53,7 @@ def test_a_process_that_speaks_now_and_then_is_left_alone(process: "subprocess.P
     assert told == []
 
 
-def test_the_time_in_which_the_watch_stood_still_makes_nobody_late(
-    process: "subprocess.Popen[bytes]", monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_the_time_in_which_the_watch_stood_still_makes_nobody_late(process, monkeypatch):
     leap = [0.0]
     monkeypatch.setattr(liveness, "monotonic", lambda: time.monotonic() + leap[0])
     told: list[float] = []
@@ -69,9 +67,7 @@ def test_the_time_in_which_the_watch_stood_still_makes_nobody_late(
     assert told == []
 
 
-def test_a_computer_that_needs_longer_gets_twice_the_time_after_each_end(
-    process: "subprocess.Popen[bytes]",
-) -> None:
+def test_a_computer_that_needs_longer_gets_twice_the_time_after_each_end(process):
     with Watch(process, lambda age_s: None, 2) as watch:
         watch.heard()
         assert process.wait(10.0) == -signal.SIGKILL
@@ -79,9 +75,7 @@ def test_a_computer_that_needs_longer_gets_twice_the_time_after_each_end(
     assert watch.ended_after_s >= 1.6
 
 
-def test_a_source_that_cannot_be_read_again_is_never_ended_unless_the_user_leaves(
-    process: "subprocess.Popen[bytes]",
-) -> None:
+def test_a_source_that_cannot_be_read_again_is_never_ended_unless_the_user_leaves(process):
     told: list[float] = []
     with Watch(process, told.append, None) as watch:
         watch.heard()

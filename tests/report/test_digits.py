@@ -16,9 +16,7 @@ from advisor.report.result_rows import joint_of
         (-104.7, 0.083, None, ("M_α", "−104.700 ± 0.083", "1.8", "1/s²")),
     ],
 )
-def test_a_value_has_the_decimals_of_its_interval(
-    value: float, half: float, prior: float | None, cells: tuple[str, ...]
-) -> None:
+def test_a_value_has_the_decimals_of_its_interval(value, half, prior, cells):
     row = EstimatedParameter(
         name="M_α", source="", unit="1/s²", value=value, half=half, half_if_white=1.8, prior=prior
     )
@@ -46,7 +44,5 @@ def test_a_held_parameter_has_its_value_and_no_interval() -> None:
         ("alpha_delay_s", 0.02, "alpha is 20 ± 98 ms late relative to the motion"),
     ],
 )
-def test_a_place_or_a_delay_is_said_by_its_side_and_not_by_its_sign(
-    name: str, value: float, said: str
-) -> None:
+def test_a_place_or_a_delay_is_said_by_its_side_and_not_by_its_sign(name, value, said):
     assert value_in_words(name, value, 0.05) == said

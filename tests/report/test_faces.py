@@ -278,9 +278,7 @@ async def test_a_sample_log_has_one_value_for_each_number_on_every_face(log: str
 @pytest.mark.study
 @pytest.mark.timeout(900)
 @pytest.mark.parametrize("flight", ["jet-vane", "turboprop", "autopilot-16", "autopilot-42"])
-async def test_a_flight_of_others_has_one_value_for_each_number_on_every_face(
-    flight: str, tmp_path: Path
-) -> None:
+async def test_a_flight_of_others_has_one_value_for_each_number_on_every_face(flight, tmp_path):
     log = FLIGHTS / f"{flight}.tlog"
     if not log.exists():
         pytest.skip("the records of others are not here")

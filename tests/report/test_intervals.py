@@ -38,7 +38,5 @@ def test_a_trim_is_shown_in_degrees_with_half_its_interval() -> None:
     ("value", "half", "shown"),
     [(-48.31, 2.13, "−48.3 ± 2.1"), (0.012345, 0.00067, "0.01235 ± 0.00067"), (-0.001, 0.2, "0.00 ± 0.20")],
 )
-def test_a_number_has_two_digits_of_its_interval_and_is_never_minus_zero(
-    value: float, half: float, shown: str
-) -> None:
+def test_a_number_has_two_digits_of_its_interval_and_is_never_minus_zero(value, half, shown):
     assert with_half(value, half) == shown

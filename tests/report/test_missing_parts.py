@@ -16,9 +16,7 @@ def flight_picture(content: object) -> NoReturn:
     raise IndexError("stretch 600 of 600")
 
 
-def test_a_section_that_fails_is_named_in_its_place_and_its_neighbours_stand(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
+def test_a_section_that_fails_is_named_in_its_place_and_its_neighbours_stand(monkeypatch):
     content: Any = SimpleNamespace(state=SimpleNamespace(maneuvers=(), tested_sideways=None))
     monkeypatch.setattr(render, "_PARTS", (lambda _: SOUND, flight_picture, lambda _: SOUND))
     first, failed, last = render.sections(content)

@@ -45,9 +45,7 @@ def test_every_reference_within_the_page_has_its_one_target(reported: Reported) 
     assert wanted <= set(ids)
 
 
-def test_the_same_flight_gives_the_same_page_to_the_byte_with_the_gap_that_gap_says(
-    reported: Reported, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_the_same_flight_gives_the_same_page_to_the_byte_with_the_gap_that_gap_says(reported, monkeypatch):
     """The pictures are those of the page: that one is drawn alike is the fact of another test."""
     pictures = iter(re.findall(r"<svg.*?</svg>", reported.written, re.DOTALL))
     monkeypatch.setattr(drawing, "draw", lambda *_: next(pictures))
@@ -91,26 +89,20 @@ def test_the_page_does_not_replace_an_input(advisor: Advisor, reported: Reported
         assert "is an input of the report" in answer.stderr
 
 
-def test_a_place_that_does_not_exist_is_refused_before_the_work(
-    advisor: Advisor, reported: Reported, tmp_path: Path
-) -> None:
+def test_a_place_that_does_not_exist_is_refused_before_the_work(advisor, reported, tmp_path):
     answer = advisor("report", reported.log, "-o", tmp_path / "nowhere" / "page.html")
     assert answer.returncode == 2
     assert "there is no folder" in answer.stderr
 
 
-def test_a_missing_library_is_named_with_the_line_that_installs_it(
-    advisor: Advisor, reported: Reported, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_missing_library_is_named_with_the_line_that_installs_it(advisor, reported, tmp_path, monkeypatch):
     monkeypatch.setitem(sys.modules, "jinja2", None)
     answer = advisor("report", reported.log, "-o", tmp_path / "page.html")
     assert answer.returncode == 2
     assert answer.stderr.strip() == "advisor report needs jinja2: pip install 'inflight-advisor[report]'."
 
 
-def test_a_full_disk_leaves_the_old_page_and_no_half_one(
-    advisor: Advisor, reported: Reported, tmp_path: Path
-) -> None:
+def test_a_full_disk_leaves_the_old_page_and_no_half_one(advisor, reported, tmp_path):
     out = tmp_path / "page.md"
     out.write_text("the page of yesterday", encoding="utf-8")
     with files_of_at_most(5_000):

@@ -100,9 +100,7 @@ def maneuvers(flight: ScriptFlight) -> list[Maneuver]:
     return [e.maneuver for e in events if isinstance(e, (ManeuverFlown, SideManeuverFlown))]
 
 
-def test_the_advisor_finds_the_inputs_that_were_flown_to_their_ends_and_no_other(
-    flight: ScriptFlight, maneuvers: list[Maneuver]
-) -> None:
+def test_the_advisor_finds_the_inputs_that_were_flown_to_their_ends_and_no_other(flight, maneuvers):
     pilot = flight.pilot
     assert [one.span.kind for one in maneuvers] == ["3-2-1-1", "aileron doublet"]
     for number, one in enumerate(maneuvers, 1):
@@ -111,9 +109,7 @@ def test_the_advisor_finds_the_inputs_that_were_flown_to_their_ends_and_no_other
 
 
 @pytest.mark.parametrize("number", [1, 2])
-def test_a_found_input_begins_where_it_was_announced(
-    number: int, flight: ScriptFlight, maneuvers: list[Maneuver]
-) -> None:
+def test_a_found_input_begins_where_it_was_announced(number, flight, maneuvers):
     _on_time(flight, number)
     begin_s = flight.pilot.at(f"ADVISOR BEGIN {number} ")
     assert maneuvers[number - 1].span.start_s == pytest.approx(begin_s, abs=0.15)

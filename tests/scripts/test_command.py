@@ -57,9 +57,7 @@ def test_a_log_gives_the_limits_of_the_outputs(advisor: Advisor, tmp_path: Path)
         (["none.tlog"], 3, "none.tlog"),
     ],
 )
-def test_bad_words_are_refused_in_one_sentence(
-    words: list[str], code: int, said: str, advisor: Advisor, tmp_path: Path
-) -> None:
+def test_bad_words_are_refused_in_one_sentence(words, code, said, advisor, tmp_path):
     done = advisor("script", "ardupilot", *words, "-o", tmp_path / "x.lua")
     assert done.returncode == code
     assert said in done.stderr

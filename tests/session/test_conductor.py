@@ -120,9 +120,7 @@ def test_a_log_that_is_played_faster_than_flown_waits_for_every_verdict(speed: f
 
 
 @pytest.mark.parametrize("judging_s", [1.0, 60.0])
-def test_the_conductor_falls_silent_behind_an_estimate_that_hangs(
-    judging_s: float, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_the_conductor_falls_silent_behind_an_estimate_that_hangs(judging_s, monkeypatch):
     monkeypatch.setattr(StagedCampaign, "judging_s", judging_s)
     flight = Flown(speed=1.0)
     flight.run()

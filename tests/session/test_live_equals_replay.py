@@ -94,9 +94,7 @@ def test_it_does_not_matter_how_the_stream_is_cut_into_batches() -> None:
     assert facts(campaign.state) == facts(replayed(log).state)
 
 
-def test_taking_a_manoeuvre_out_by_hand_decides_everything_again_and_putting_it_back_restores_it(
-    campaign: Campaign,
-) -> None:
+def test_taking_a_manoeuvre_out_by_hand_decides_everything_again_and_putting_it_back_restores_it(campaign):
     before = facts(campaign.state)
     campaign.engineer.exclude(2, "a gust")
     state = campaign.state

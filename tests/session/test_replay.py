@@ -121,9 +121,7 @@ def test_a_leaping_clock_is_played_in_bounded_time():
     st.lists(st.floats(0.0, 100.0), max_size=10),
     st.integers(1, 3),
 )
-def test_cuts_anywhere_deliver_each_message_once_in_order(
-    arrival_s: list[float], positions: list[float], kinds: int
-):
+def test_cuts_anywhere_deliver_each_message_once_in_order(arrival_s, positions, kinds):
     order = np.arange(len(arrival_s)) * 7
     stamps = np.array(arrival_s)
     pieces = [columns(order[k::kinds], stamps[k::kinds], f"KIND_{k}") for k in range(kinds)]

@@ -84,9 +84,7 @@ UNUSABLE = {"usable": False, "verdict": None}
     ],
     ids=lambda part: str(part.get("kind") or part.get("verdict")) if isinstance(part, dict) else str(part),
 )
-def test_an_answer_is_right_where_it_fits_its_question(
-    case: dict[str, Any], said: dict[str, Any], right: bool
-) -> None:
+def test_an_answer_is_right_where_it_fits_its_question(case, said, right):
     assert judge(case, said).is_right is right
 
 

@@ -71,9 +71,7 @@ def simulator(folder: Path, fmi: int, names: FmuVariables = NAMES) -> FmuSimulat
 
 @both
 @pytest.mark.parametrize("speed", [25.0, 40.0])
-def test_an_fmu_trims_at_the_flown_speed_and_answers_by_its_own_equations(
-    tmp_path: Path, fmi: int, speed: float
-) -> None:
+def test_an_fmu_trims_at_the_flown_speed_and_answers_by_its_own_equations(tmp_path, fmi, speed):
     condition = Condition(speed, 800.0)
     flown = simulator(tmp_path, fmi).replay(condition, Inputs(T, DOUBLET))
     assert flown.t == pytest.approx(0.01 * np.arange(301))
@@ -168,9 +166,7 @@ def test_in_a_process_of_its_own_an_fmu_flies_the_same(tmp_path: Path) -> None:
         (3, 2, "FMU short_period.fmu does not finish a replay within 1 s"),
     ],
 )
-def test_an_fmu_that_crashes_or_hangs_is_one_sentence(
-    tmp_path: Path, fmi: int, fault: int, words: str
-) -> None:
+def test_an_fmu_that_crashes_or_hangs_is_one_sentence(tmp_path, fmi, fault, words):
     fmu = make_fmu(str(build(tmp_path, fmi, fault)), Aircraft(fmu=NAMES))
     fmu.speed_limit_s = 1.0
     with pytest.raises(UnusableInputError, match=words):
@@ -198,9 +194,7 @@ def test_an_fmu_that_refuses_a_step_is_one_sentence(tmp_path: Path, fmi: int) ->
         (replace(NAMES, trim=FmuTrim(airspeed="V_0")), "'V_0', which fmu.trim.airspeed of the aircraft file"),
     ],
 )
-def test_a_variable_that_the_fmu_has_not_is_named(
-    tmp_path: Path, fmi: int, names: FmuVariables, words: str
-) -> None:
+def test_a_variable_that_the_fmu_has_not_is_named(tmp_path, fmi, names, words):
     with pytest.raises(UnusableInputError, match=words):
         simulator(tmp_path, fmi, names)
 

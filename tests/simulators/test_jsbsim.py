@@ -1,7 +1,6 @@
 """JSBSim as the user's simulator: from a light single to an airliner, with the real engine."""
 
 import shutil
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -149,9 +148,7 @@ def test_a_descent_is_flown_on_its_own_path(model: str) -> None:
     assert flown.height_m[-1] - at.height_m == pytest.approx(-0.03 * 5.0 * at.airspeed_m_s, rel=0.02)
 
 
-def test_a_copied_model_flies_as_the_shipped_one_and_its_folder_stays_as_it_was(
-    model: str, tmp_path: Path
-) -> None:
+def test_a_copied_model_flies_as_the_shipped_one_and_its_folder_stays_as_it_was(model, tmp_path):
     shutil.copytree(find_model(model).parent, tmp_path / "mine")
     path = tmp_path / "mine" / "another name.xml"
     (tmp_path / "mine" / f"{model}.xml").rename(path)

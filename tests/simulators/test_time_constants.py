@@ -1,7 +1,6 @@
 """A lag of known size in a user's simulator, seen through each adapter."""
 
 import re
-from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -57,9 +56,7 @@ def flown(simulator: Simulator, condition: Condition) -> Replay:
 
 
 @pytest.mark.parametrize("of", [of_python, of_fmu, of_jsbsim])
-def test_a_lag_in_the_users_simulator_keeps_its_time_constant(
-    of: Callable[[Path, bool], tuple[Simulator, Condition]], tmp_path: Path
-) -> None:
+def test_a_lag_in_the_users_simulator_keeps_its_time_constant(of, tmp_path):
     quick, slow = (flown(*of(tmp_path, lags)) for lags in (False, True))
     h = float(quick.t[1] - quick.t[0])
     # A linear aircraft behind a lag answers as its own answer behind that lag.

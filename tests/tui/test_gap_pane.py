@@ -43,9 +43,7 @@ DOCUMENT = {
 }
 
 
-async def test_a_running_diagnosis_says_for_how_long_it_runs(
-    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
-) -> None:
+async def test_a_running_diagnosis_says_for_how_long_it_runs(monkeypatch, tmp_path):
     ended = Event()
     monkeypatch.setattr(pane, "diagnose_elsewhere", lambda _: ended.wait(20.0) and DOCUMENT)
     async with stage(flights.state(4), settings=ENGINEER, size=(140, 45), logs=[tmp_path / "a.tlog"]) as here:
@@ -55,9 +53,7 @@ async def test_a_running_diagnosis_says_for_how_long_it_runs(
         await here.until(lambda: "answers 30 ms too early" in here.words("#gap-text"))
 
 
-async def test_choosing_the_pane_diagnoses_the_flight_and_shows_the_worst_manoeuvre(
-    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
-) -> None:
+async def test_choosing_the_pane_diagnoses_the_flight_and_shows_the_worst_manoeuvre(monkeypatch, tmp_path):
     asked: list[GapTask] = []
     monkeypatch.setattr(pane, "diagnose_elsewhere", lambda task: asked.append(task) or DOCUMENT)
     async with stage(flights.state(4), settings=ENGINEER, size=(140, 45), logs=[tmp_path / "a.tlog"]) as here:

@@ -2,17 +2,13 @@
 
 from typing import NoReturn
 
-import pytest
-
 from advisor.session.view import View
 from advisor.tui.panes.pilot import BigWord
 from tests.tui import flights
 from tests.tui.stage import stage
 
 
-async def test_a_pane_that_fails_again_and_again_is_named_once_and_the_others_are_painted(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
+async def test_a_pane_that_fails_again_and_again_is_named_once_and_the_others_are_painted(monkeypatch):
     painted = list[View]()
 
     def fail(pane: BigWord, view: View) -> NoReturn:

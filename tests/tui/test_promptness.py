@@ -93,9 +93,7 @@ async def test_no_style_is_parsed_twice_for_a_theme(parsed: list[object]):
         assert not parsed
 
 
-async def test_styles_of_the_other_themes_are_parsed_while_no_key_is_pressed(
-    monkeypatch: pytest.MonkeyPatch, parsed: list[object]
-):
+async def test_styles_of_the_other_themes_are_parsed_while_no_key_is_pressed(monkeypatch, parsed):
     monkeypatch.setattr(application, "_QUIET_S", 0.01)
     async with stage(flights.state(3)) as here:
         await here.until(
@@ -182,9 +180,7 @@ async def test_the_application_leaves_the_collector_as_it_was():
     assert (gc.isenabled(), gc.get_threshold(), gc.get_freeze_count()) == before
 
 
-async def test_reports_behind_a_key_wait_for_its_answer_and_then_the_newest_is_shown(
-    monkeypatch: pytest.MonkeyPatch,
-):
+async def test_reports_behind_a_key_wait_for_its_answer_and_then_the_newest_is_shown(monkeypatch):
     async with stage(flights.state(3)) as here:
         app, states = here.app, []
         # The campaign has nothing more to say: a report of its own would be a newer one.

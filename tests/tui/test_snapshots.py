@@ -19,9 +19,7 @@ async def test_the_pilot_screen_looks_as_it_did(size: tuple[int, int], snapshot:
 
 
 @pytest.mark.parametrize(("size", "pane"), [((80, 24), 3), ((120, 40), 4), ((180, 50), 4)], ids=str)
-async def test_the_engineer_screen_looks_as_it_did(
-    size: tuple[int, int], pane: int, snapshot: SnapshotAssertion
-):
+async def test_the_engineer_screen_looks_as_it_did(size, pane, snapshot):
     async with stage(
         flights.state(4, in_the_air=True), size=size, settings=Settings(screen="engineer")
     ) as here:

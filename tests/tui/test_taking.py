@@ -6,7 +6,6 @@ from io import StringIO
 from pathlib import Path
 
 import numpy as np
-import pytest
 from textual.app import App
 
 from advisor.session.source import Tempo
@@ -106,9 +105,7 @@ async def test_a_long_path_is_told_in_full_on_a_narrow_terminal(tmp_path: Path):
         await here.until(lambda: folder.name in notice(here))
 
 
-async def test_a_browser_is_offered_the_files_and_the_server_keeps_none(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-):
+async def test_a_browser_is_offered_the_files_and_the_server_keeps_none(tmp_path, monkeypatch):
     offered: dict[str, str] = {}
     monkeypatch.setattr(App, "is_web", True)
     monkeypatch.setattr(

@@ -41,9 +41,7 @@ async def test_a_rejected_manoeuvre_and_a_power_on_before_are_told_apart() -> No
         assert here.words("#whole-maneuvers") == ""
 
 
-async def test_a_click_goes_to_the_manoeuvre_there_of_either_axis_or_else_to_the_time(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
+async def test_a_click_goes_to_the_manoeuvre_there_of_either_axis_or_else_to_the_time(monkeypatch):
     player = LogPlayer("a.tlog", lambda: [columns(range(20000), [k / 50.0 for k in range(20000)])])
     playback = Playback(300.0, 400.0)
     # Every later report has this playback too, so no report replaces it between two clicks.

@@ -90,9 +90,7 @@ def test_a_page_that_only_watches_is_not_heeded() -> None:
 
 
 @pytest.mark.parametrize(("watch_only", "kind"), [(False, ViewerApp), (True, WatchingApp)])
-async def test_a_page_offers_the_keys_that_it_may_use_and_is_left_at_once(
-    watch_only: bool, kind: type[ViewerApp]
-) -> None:
+async def test_a_page_offers_the_keys_that_it_may_use_and_is_left_at_once(watch_only, kind):
     with at_work(watch_only) as server:
         app = kind(server.viewing, server.page())
         async with app.run_test(size=(120, 40)) as pilot:

@@ -28,9 +28,7 @@ def browser() -> Iterator["Browser"]:
 
 
 @pytest.mark.study
-def test_a_log_is_replayed_in_a_page_that_asks_nothing_of_another_host(
-    browser: "Browser", tmp_path: Path
-) -> None:
+def test_a_log_is_replayed_in_a_page_that_asks_nothing_of_another_host(browser, tmp_path):
     serving = Serving(tmp_path, "replay", LOGS / "bundled-demo.tlog", "--speed", "max")
     try:
         page = Screen(browser, serving.url)
@@ -44,9 +42,7 @@ def test_a_log_is_replayed_in_a_page_that_asks_nothing_of_another_host(
         serving.clear()
 
 
-def test_two_pages_show_one_campaign_on_one_link_and_nothing_outlives_the_command(
-    browser: "Browser", tmp_path: Path
-) -> None:
+def test_two_pages_show_one_campaign_on_one_link_and_nothing_outlives_the_command(browser, tmp_path):
     with socket.create_server(("127.0.0.1", 0)) as vehicle:
         master = f"tcp:127.0.0.1:{vehicle.getsockname()[1]}"
         serving = Serving(tmp_path, "live", "--master", master, "--record", tmp_path / "flight.tlog")

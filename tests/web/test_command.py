@@ -29,9 +29,7 @@ def test_another_host_needs_a_password(advisor: Advisor, monkeypatch: pytest.Mon
     assert "--host 0.0.0.0 opens the pages to other computers and needs a password" in result.stderr
 
 
-def test_a_password_that_can_be_guessed_is_refused(
-    advisor: Advisor, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_password_that_can_be_guessed_is_refused(advisor, tmp_path, monkeypatch):
     file = tmp_path / "crew.txt"
     file.write_text("1234567\n")
     file.chmod(0o600)

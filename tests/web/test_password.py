@@ -20,9 +20,7 @@ def crew(tmp_path: Path) -> Path:
     ("mode", "others_read"),
     [(0o600, False), (0o400, False), (0o640, True), (0o604, True), (0o620, True), (0o610, True)],
 )
-def test_a_file_that_the_group_or_others_reach_is_named_with_its_mend(
-    crew: Path, capsys: pytest.CaptureFixture[str], mode: int, others_read: bool
-) -> None:
+def test_a_file_that_the_group_or_others_reach_is_named_with_its_mend(crew, capsys, mode, others_read):
     crew.chmod(mode)
     assert read_password(crew, "") == "windsock-27"
     said = f"other users can read {crew}: chmod 600 {crew}\n"

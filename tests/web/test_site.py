@@ -106,9 +106,7 @@ def test_the_right_password_passes_ahead_of_the_guesses_that_wait(guarded: Calle
     assert time.monotonic() - began_s > 3.0
 
 
-def test_further_guesses_than_may_wait_are_refused_unseen(
-    guarded: Caller, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_further_guesses_than_may_wait_are_refused_unseen(guarded, monkeypatch):
     monkeypatch.setattr(login, "MOST_WAITING", 1)
     guess = Thread(target=Caller(guarded.port).log_in, args=("guess",))
     guess.start()

@@ -240,9 +240,7 @@ def test_log_holds_every_message(quiet_case: Case, quiet_log: list[mavlink.MAVLi
     assert {message.get_type() for message in quiet_log} == expected
 
 
-def test_log_and_calibration_tell_the_command(
-    quiet_case: Case, quiet_log: list[mavlink.MAVLink_message]
-) -> None:
+def test_log_and_calibration_tell_the_command(quiet_case, quiet_log):
     case = quiet_case
     assert case.recorder.low_pass is None
     field = f"servo{case.wiring.elevator_output}_raw"

@@ -61,9 +61,7 @@ def test_every_error_stays_within_its_prior() -> None:
         (finding("unit", "us", "counts"), False),
     ],
 )
-def test_a_contradiction_is_right_where_the_truth_is_nearer_to_it_than_to_the_statement(
-    told: InstrumentFinding, true: bool
-) -> None:
+def test_a_contradiction_is_right_where_the_truth_is_nearer_to_it_than_to_the_statement(told, true):
     assert SOUND.confirms(told) is true
 
 

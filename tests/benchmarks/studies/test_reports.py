@@ -1,12 +1,10 @@
 """What the advice saves, and how soon a changed aircraft is noticed, in small numbers."""
 
 import json
-from typing import Any
 
 import pytest
 from click.testing import CliRunner
 
-from advisor.bundled.study.run import Study
 from benchmarks.studies import advised, reports
 from benchmarks.studies.__main__ import main
 
@@ -44,8 +42,6 @@ def test_a_changed_aircraft_is_noticed_within_two_manoeuvres() -> None:
 @pytest.mark.parametrize(
     "study", [reports.advice(3, 3), reports.change(30, 3), reports.early_stops(7, 3), reports.coverage(7, 3)]
 )
-def test_no_two_tasks_of_a_study_have_the_same_seed_and_together_they_are_all_campaigns(
-    study: Study[Any, Any],
-) -> None:
+def test_no_two_tasks_of_a_study_have_the_same_seed_and_together_they_are_all_campaigns(study):
     assert len(set(study.tasks)) == len(study.tasks)
     assert max(task.campaigns for task in study.tasks) < sum(task.campaigns for task in study.tasks)

@@ -51,9 +51,7 @@ def test_estimates_scatter_as_their_bounds_say(flown: list[list[Estimate]]) -> N
     np.testing.assert_allclose(np.sqrt(np.mean(normalised**2, axis=0)), 1.0, atol=0.35)
 
 
-def test_at_one_per_cent_continuous_improvement_stops_after_three_as_in_the_paper(
-    flown: list[list[Estimate]],
-) -> None:
+def test_at_one_per_cent_continuous_improvement_stops_after_three_as_in_the_paper(flown):
     assert {outcome(campaign, "continuous", PLAN).needed for campaign in flown} == {3}
 
 

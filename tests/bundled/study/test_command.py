@@ -52,9 +52,7 @@ def test_json_is_one_document_and_nothing_else(pictured: dict[Path, Result]) -> 
     }
 
 
-def test_the_same_seed_gives_the_same_study_in_whatever_order_its_results_come(
-    pictured: dict[Path, Result],
-) -> None:
+def test_the_same_seed_gives_the_same_study_in_whatever_order_its_results_come(pictured):
     one, other = (result.stdout for result in pictured.values())
     assert one == other
 

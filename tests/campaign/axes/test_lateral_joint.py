@@ -106,9 +106,7 @@ def test_a_stop_ends_where_a_manoeuvre_on_which_it_rests_is_excluded(monkeypatch
     assert campaign.flight_test.decision == "continue"
 
 
-def test_a_manoeuvre_that_contradicts_all_the_others_is_left_out_and_said(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
+def test_a_manoeuvre_that_contradicts_all_the_others_is_left_out_and_said(monkeypatch):
     sound = estimate("aileron", "rudder", percent=2.0)
     rng, std = np.random.default_rng(5), np.sqrt(np.diag(sound.covariance))
     theta = [sound.theta + std * rng.standard_normal(len(std)) for _ in range(6)]

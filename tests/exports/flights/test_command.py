@@ -8,7 +8,6 @@ import pytest
 from advisor.exports.flights.staging import staged
 from advisor.words.problems import ConfigurationError
 from tests.conftest import Advisor
-from tests.exports.flights.conftest import Exported
 from tests.flights import TWO, recorded
 from tests.full_disk import files_of_at_most
 
@@ -70,9 +69,7 @@ def test_a_missing_library_is_one_sentence_with_the_line_that_installs_it(
     assert run.stderr == f"--format {name} needs {library}: pip install 'inflight-advisor[export]'.\n"
 
 
-def test_a_log_that_cannot_be_used_is_told_with_exit_code_3_and_no_folder_is_made(
-    advisor: Advisor, tmp_path: Path
-) -> None:
+def test_a_log_that_cannot_be_used_is_told_with_exit_code_3_and_no_folder_is_made(advisor, tmp_path):
     (tmp_path / "flight.tlog").write_bytes(b"")
     run = advisor("export", tmp_path / "flight.tlog", "-o", tmp_path / "out")
     assert run.returncode == 3
@@ -81,9 +78,7 @@ def test_a_log_that_cannot_be_used_is_told_with_exit_code_3_and_no_folder_is_mad
     assert not (tmp_path / "out").exists()
 
 
-def test_a_place_below_a_file_is_refused_in_one_sentence(
-    exported: Exported, advisor: Advisor, tmp_path: Path
-) -> None:
+def test_a_place_below_a_file_is_refused_in_one_sentence(exported, advisor, tmp_path):
     (tmp_path / "file").write_text("")
     run = advisor("export", exported.log, "-o", tmp_path / "file" / "out")
     assert run.returncode == 2
@@ -91,9 +86,7 @@ def test_a_place_below_a_file_is_refused_in_one_sentence(
     assert "Traceback" not in run.stderr
 
 
-def test_a_disk_that_is_full_in_the_middle_leaves_nothing_behind(
-    exported: Exported, advisor: Advisor, tmp_path: Path
-) -> None:
+def test_a_disk_that_is_full_in_the_middle_leaves_nothing_behind(exported, advisor, tmp_path):
     """The smaller tables fit, the grid does not."""
     with files_of_at_most(300_000):
         run = advisor("export", exported.log, "-o", tmp_path / "out")

@@ -39,9 +39,7 @@ def test_csv_has_the_manoeuvres_of_the_json_document(exported: Exported) -> None
         assert number(row["rms_q"]) == told["fit"]["q"]["rms"]
 
 
-def test_csv_has_the_estimates_of_the_json_document_with_the_joint_one_as_number_0(
-    exported: Exported,
-) -> None:
+def test_csv_has_the_estimates_of_the_json_document_with_the_joint_one_as_number_0(exported):
     rows = {(int(row["maneuver"]), row["parameter"]): row for row in rows_of(exported, "estimates")}
     told = {m["number"]: m["estimates"] for m in exported.document["maneuvers"]}
     told[0] = exported.document["model"]
@@ -136,9 +134,7 @@ def test_octave_reads_the_mat_file(exported: Exported) -> None:
     assert int(samples) == len(exported.flights.power_ons[0][1].channels["q"])
 
 
-def test_mcap_has_a_topic_a_channel_with_vehicle_times_and_a_schema_with_the_unit(
-    exported: Exported,
-) -> None:
+def test_mcap_has_a_topic_a_channel_with_vehicle_times_and_a_schema_with_the_unit(exported):
     _, power_on = exported.flights.power_ons[0]
     with (exported.folder / "record_1.mcap").open("rb") as file:
         messages = list(make_reader(file).iter_messages())
@@ -158,9 +154,7 @@ def test_mcap_has_a_topic_a_channel_with_vehicle_times_and_a_schema_with_the_uni
     assert len(by_topic["/residuals_q"]) == len(exported.data.table("residuals_q"))
 
 
-def test_residuals_are_those_of_the_accepted_manoeuvres_and_have_the_rms_of_the_document(
-    exported: Exported,
-) -> None:
+def test_residuals_are_those_of_the_accepted_manoeuvres_and_have_the_rms_of_the_document(exported):
     rows = rows_of(exported, "residuals_q")
     accepted = [m for m in exported.document["maneuvers"] if m["verdict"] == "accepted"]
     assert {int(row["maneuver"]) for row in rows} == {m["number"] for m in accepted}

@@ -69,9 +69,7 @@ def test_a_list_of_one_is_one_output_and_a_list_of_two_has_shares() -> None:
         (ElevatorOutput(1), {"SERVO1_REVERSED": 0}, False),
     ],
 )
-def test_a_sign_is_sure_by_a_calibration_or_by_function_and_direction(
-    output: ElevatorOutput, parameters: dict[str, float], sure: bool
-) -> None:
+def test_a_sign_is_sure_by_a_calibration_or_by_function_and_direction(output, parameters, sure):
     first, _ = found(listing(output, ElevatorOutput(2)), **parameters).parts
     assert first.sure is sure
 

@@ -30,9 +30,7 @@ def flown(values: Mapping[str, float], airspeed: str = "VFR_HUD.airspeed") -> Ma
         (5000.0, 54_020.0, 0.7361),
     ],
 )
-def test_the_standard_atmosphere_is_the_tabulated_one(
-    height_m: float, pressure_pa: float, density: float
-) -> None:
+def test_the_standard_atmosphere_is_the_tabulated_one(height_m, pressure_pa, density):
     assert standard_pressure(height_m) == pytest.approx(pressure_pa, rel=1e-4)
     assert standard_density(pressure_pa) == pytest.approx(density, abs=1e-4)
 

@@ -64,9 +64,7 @@ def test_a_sound_flight_contradicts_nothing(found_in: Found, instruments: dict[s
         (partial(found_in_roll_and_yaw, vane=False), times(-1.0, "a_y"), "a_y_sign", "left"),
     ],
 )
-def test_a_wrong_sense_or_unit_is_named_and_refused(
-    found_in: Found, fault: Callable[[Channels], Channels], code: str, value: str
-) -> None:
+def test_a_wrong_sense_or_unit_is_named_and_refused(found_in, fault, code, value):
     ((named, wrong),) = found_in(fault).items()
     assert (named, wrong.value, wrong.refuses) == (code, value, True)
     assert wrong.fix
@@ -81,9 +79,7 @@ def test_a_wrong_sense_or_unit_is_named_and_refused(
         ((0.001, 0.001), "a_z_unit", "g"),
     ],
 )
-def test_a_known_unit_or_sense_of_the_force_is_corrected_and_named(
-    factors: tuple[float, float], code: str, found: str
-) -> None:
+def test_a_known_unit_or_sense_of_the_force_is_corrected_and_named(factors, code, found):
     sound = flight()
     examined = examine(times(factors[1], "a_x")(times(factors[0], "a_z")(sound)))
     (wrong,) = examined.findings
@@ -156,9 +152,7 @@ def delayed(by_s: float, name: str, channels: Channels) -> Channels:
         (found_in_roll_and_yaw, late(0.1, "bank"), "bank_delay_s"),
     ],
 )
-def test_an_attitude_later_than_its_rates_is_set_right(
-    found_in: Found, fault: Callable[[Channels], Channels], code: str
-) -> None:
+def test_an_attitude_later_than_its_rates_is_set_right(found_in, fault, code):
     ((named, wrong),) = found_in(fault).items()
     assert (named, wrong.used) == (code, True)
     assert wrong.value == pytest.approx(0.1, abs=0.01)

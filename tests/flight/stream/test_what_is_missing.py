@@ -62,9 +62,7 @@ def test_the_motion_needs_no_angle_of_attack(vehicle: Vehicle) -> None:
 
 @CARRIERS
 @pytest.mark.parametrize("missing", MOTION)
-def test_the_motion_replaces_no_angle_of_attack_without_one_of_its_channels(
-    vehicle: Vehicle, missing: str
-) -> None:
+def test_the_motion_replaces_no_angle_of_attack_without_one_of_its_channels(vehicle, missing):
     there = [name for name in MOTION if name != missing]
     assert codes(arriving("elevator", "q", *there), vehicle) == ["no_alpha"]
 
@@ -83,9 +81,7 @@ def test_only_ardupilot_is_asked_for_its_message_of_the_angle_of_attack() -> Non
 
 @pytest.mark.parametrize(("hz", "found"), [(7.9, ["rate"]), (8.0, [])])
 @pytest.mark.parametrize("name", ["elevator", "q", "alpha"])
-def test_eight_samples_a_second_are_the_least_of_each_needed_channel(
-    name: str, hz: float, found: list[str]
-) -> None:
+def test_eight_samples_a_second_are_the_least_of_each_needed_channel(name, hz, found):
     assert codes(arriving("elevator", "q", "alpha", **{name: hz})) == found
 
 
@@ -134,9 +130,7 @@ def test_an_unknown_elevator_is_one_problem(vehicle: Vehicle) -> None:
         (("elevator", "alpha"), ["pitch rate", "specific force"], ["pulse", "angle of attack", "air speed"]),
     ],
 )
-def test_a_log_names_everything_that_it_lacks_in_one_sentence(
-    channels: tuple[str, ...], named: list[str], silent: list[str]
-) -> None:
+def test_a_log_names_everything_that_it_lacks_in_one_sentence(channels, named, silent):
     (problem,) = told(arriving(*channels), LOG, seen=())
     assert [what for what in named if f"no {what}" not in problem.text] == []
     assert [what for what in silent if f"no {what}" in problem.text] == []

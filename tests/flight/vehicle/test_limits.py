@@ -1,7 +1,5 @@
 """Limits of a servo output are the stated ones where a linkage can have them, else assumed ones."""
 
-from collections.abc import Mapping
-
 import numpy as np
 import pytest
 
@@ -57,9 +55,7 @@ def test_limits_that_no_parameter_states_are_called_assumed_by_name() -> None:
         ),
     ],
 )
-def test_limits_that_contradict_each_other_are_named_with_the_remedy(
-    wrong: Mapping[str, float], said: str
-) -> None:
+def test_limits_that_contradict_each_other_are_named_with_the_remedy(wrong, said):
     found = elevator(**{**STATED, **wrong})
     assert scale(found) == Scale()
     (doubt,) = found.doubts

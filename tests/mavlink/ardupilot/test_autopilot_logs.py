@@ -3,7 +3,7 @@
 import contextlib
 import math
 import tempfile
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from pathlib import Path
 
 import numpy as np
@@ -295,9 +295,7 @@ class TestArduPilot:
         assert stream.channels["theta"].rate_hz == pytest.approx(25.0, rel=0.01)
 
     @pytest.mark.parametrize("after_s", [1.0, 2.0])
-    def test_a_manoeuvre_lasts_until_the_log_says_that_the_mode_changed(
-        self, tmp_path: Path, after_s: float
-    ) -> None:
+    def test_a_manoeuvre_lasts_until_the_log_says_that_the_mode_changed(self, tmp_path, after_s):
         """Over a link it may have changed any time since the heartbeat before."""
         stream, last_step_s = FlightStream(Aircraft()), FIRST_STEP_S + 7 * 0.5
         path = tmp_path / "flight.bin"
@@ -347,9 +345,7 @@ class TestPx4:
         assert messages["HIGHRES_IMU"].arrival_s[0] == pytest.approx(1_770_000_001.0, abs=0.1)
 
     @pytest.mark.parametrize(("stated", "kind"), [({}, 1), ({"MAV_TYPE": 2.0}, 2), ({"MAV_TYPE": 22.0}, 22)])
-    def test_the_kind_of_vehicle_is_the_one_its_parameter_states(
-        self, tmp_path: Path, stated: dict[str, float], kind: int
-    ) -> None:
+    def test_the_kind_of_vehicle_is_the_one_its_parameter_states(self, tmp_path, stated, kind):
         heartbeat = read(tmp_path, px4_flight(**stated), "flight.ulg")["HEARTBEAT"]
         assert set(heartbeat.fields["type"].tolist()) == {kind}
 
@@ -387,9 +383,7 @@ class TestPx4:
         with pytest.raises(UnusableInputError, match=r"empty\.ulg holds no attitude"):
             list(open_log(path))
 
-    def test_nothing_is_printed_where_results_belong(
-        self, tmp_path: Path, capsys: pytest.CaptureFixture[str]
-    ) -> None:
+    def test_nothing_is_printed_where_results_belong(self, tmp_path, capsys):
         path = tmp_path / "flight.ulg"
         content = bytearray(px4_flight())
         content[4000:4100] = bytes(100)
@@ -404,9 +398,7 @@ class TestPx4:
     damages=st.lists(st.tuples(st.floats(0, 1), st.binary(min_size=1, max_size=40)), min_size=1, max_size=5),
     kept=st.floats(0.3, 1.0),
 )
-def test_damage_never_crashes_a_reader(
-    flight: Callable[[float], bytes], damages: list[tuple[float, bytes]], kept: float
-) -> None:
+def test_damage_never_crashes_a_reader(flight, damages, kept):
     content = bytearray(flight(1.0))
     for place, garbage in damages:
         at = 16 + int(place * (len(content) - 64))

@@ -120,9 +120,7 @@ RATES = {
 
 
 @pytest.mark.parametrize("record", [*RATES, "ATT"])
-def test_without_imu_the_pitch_rate_comes_from_another_record_and_it_is_said(
-    tmp_path: Path, record: str
-) -> None:
+def test_without_imu_the_pitch_rate_comes_from_another_record_and_it_is_said(tmp_path, record):
     added = {name: RATES[name] for name in {record} & RATES.keys()}
     content = rewritten(dataflash_flight(40.0), drop={"IMU"}, add=added)
     read = messages(tmp_path, content)

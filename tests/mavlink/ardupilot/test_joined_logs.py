@@ -60,9 +60,7 @@ def test_the_messages_of_both_joined_logs_arrive_one_log_after_the_other(tmp_pat
 
 
 @pytest.mark.parametrize("window", [300, 1000, 4096, 100_003])
-def test_a_file_read_in_small_windows_gives_the_records_of_one_large_window(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, window: int
-) -> None:
+def test_a_file_read_in_small_windows_gives_the_records_of_one_large_window(tmp_path, monkeypatch, window):
     path = joined(tmp_path)
     damaged = bytearray(path.read_bytes())
     for at in np.random.default_rng(3).integers(5_000, len(damaged), 200).tolist():

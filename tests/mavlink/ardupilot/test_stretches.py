@@ -1,6 +1,5 @@
 """A long log becomes messages stretch by stretch, and each stretch gives what the whole log would."""
 
-from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -37,9 +36,7 @@ def messages(path: Path) -> tuple[int, dict[str, list[Columns]]]:
     ],
     ids=["sound", "without a sound air speed for two stretches", "stamps from 1970", "rates from the angles"],
 )
-def test_a_log_in_stretches_gives_the_messages_of_the_whole(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, made: Callable[[bytes], bytes]
-) -> None:
+def test_a_log_in_stretches_gives_the_messages_of_the_whole(tmp_path, monkeypatch, made):
     path = tmp_path / "flight.bin"
     path.write_bytes(made(dataflash_flight(FLIGHT_S)))
     batches, whole = messages(path)
@@ -55,9 +52,7 @@ def test_a_log_in_stretches_gives_the_messages_of_the_whole(
             np.testing.assert_array_equal(np.concatenate([c.fields[field] for c in parts[name]]), values)
 
 
-def test_the_stretches_of_a_log_come_one_after_the_other(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_the_stretches_of_a_log_come_one_after_the_other(tmp_path, monkeypatch):
     path = tmp_path / "flight.bin"
     path.write_bytes(dataflash_flight(FLIGHT_S))
     monkeypatch.setattr(record_scan, "WINDOW_BYTES", WINDOW_BYTES)

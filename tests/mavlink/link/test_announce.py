@@ -21,9 +21,7 @@ def joined(announcer: Announcer) -> list[str]:
 
 @settings(derandomize=True)
 @given(st.text(max_size=400), st.integers(0, 10**6))
-def test_chunks_are_short_share_an_id_count_up_and_end_with_one_that_is_not_full(
-    text: str, number: int
-) -> None:
+def test_chunks_are_short_share_an_id_count_up_and_end_with_one_that_is_not_full(text, number):
     messages = status_text(text, number)
     chunks = [message.text for message in messages]
     assert all(len(chunk) == 50 for chunk in chunks[:-1])

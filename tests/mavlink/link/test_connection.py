@@ -31,9 +31,7 @@ from advisor.words.problems import ConfigurationError
         ("uds:/run/mavlink.sock", "unix", "/run/mavlink.sock", 0),
     ],
 )
-def test_every_spelling_of_pymavlink_and_mavsdk_is_understood(
-    text: str, kind: str, host: str, port: int
-) -> None:
+def test_every_spelling_of_pymavlink_and_mavsdk_is_understood(text, kind, host, port):
     address = parse_connection(text)
     assert (address.kind, address.host, address.port) == (kind, host, port)
 

@@ -56,15 +56,11 @@ def amid(records: list[Record], strangers: list[bytes]) -> list[Record]:
     return mixed
 
 
-def test_how_the_stream_is_cut_into_batches_changes_no_digit(
-    flight: list[Record], samples: list[tuple[float, ...]]
-) -> None:
+def test_how_the_stream_is_cut_into_batches_changes_no_digit(flight, samples):
     assert flown(flight, batch=50) == samples
 
 
-def test_a_fifth_of_the_packets_lost_and_200_ms_of_jitter_change_no_verdict(
-    flight: list[Record], undisturbed: list[tuple[bool, ...]]
-) -> None:
+def test_a_fifth_of_the_packets_lost_and_200_ms_of_jitter_change_no_verdict(flight, undisturbed):
     assert len(undisturbed) == 2
     # Parameters come by a protocol that repeats what is lost; everything else is sent once.
     asked = [record for record in flight if message_id(record) == PARAM_VALUE]
@@ -76,9 +72,7 @@ def test_a_fifth_of_the_packets_lost_and_200_ms_of_jitter_change_no_verdict(
     ]
 
 
-def test_strangers_on_the_link_change_no_sample_of_any_manoeuvre(
-    flight: list[Record], samples: list[tuple[float, ...]]
-) -> None:
+def test_strangers_on_the_link_change_no_sample_of_any_manoeuvre(flight, samples):
     intruder = Sender(system=9)
     strangers = [
         intruder.pack(message)
@@ -98,9 +92,7 @@ def test_strangers_on_the_link_change_no_sample_of_any_manoeuvre(
     assert flown(disturbed) == samples
 
 
-def test_with_a_key_even_who_claims_to_be_the_vehicle_changes_no_sample(
-    flight: list[Record], samples: list[tuple[float, ...]]
-) -> None:
+def test_with_a_key_even_who_claims_to_be_the_vehicle_changes_no_sample(flight, samples):
     key = bytes(range(32))
     genuine, impostor = Sender(system=1, key=key), Sender(system=1)
     strangers = [impostor.pack(attitude(5, pitch=1.5)), impostor.pack(heartbeat())]

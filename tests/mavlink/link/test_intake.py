@@ -39,9 +39,7 @@ def test_the_first_autopilot_is_the_vehicle_by_its_heartbeat_alone() -> None:
 
 
 @pytest.mark.parametrize(("asked", "vehicle"), [(None, (3, 1)), (4, (4, 1)), (5, None)])
-def test_only_the_system_that_was_asked_for_is_the_vehicle(
-    asked: int | None, vehicle: tuple[int, int] | None
-) -> None:
+def test_only_the_system_that_was_asked_for_is_the_vehicle(asked, vehicle):
     intake = Intake(CRC_EXTRA, asked, None)
     for system in (3, 4):
         intake.take([(PEER, Sender(system=system).pack(heartbeat()))], 0.0)

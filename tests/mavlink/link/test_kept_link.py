@@ -56,9 +56,7 @@ def heard(link: KeptLink, count: int) -> list[float]:
     return stamps
 
 
-def test_a_reader_that_comes_late_hears_everything_once_and_in_order(
-    process: LinkProcess, vehicle: UdpVehicle
-) -> None:
+def test_a_reader_that_comes_late_hears_everything_once_and_in_order(process, vehicle):
     with process.link() as early, process.link() as late:
         vehicle.send(*(attitude(i) for i in range(300)))
         assert heard(early, 300) == list(range(300))
@@ -88,9 +86,7 @@ def test_without_a_recording_a_late_reader_hears_the_parameters_that_arrived_bef
     assert values(columns, "PARAM_VALUE", "param_value") == [19.0]
 
 
-def test_what_arrives_while_the_process_is_dead_is_heard_by_the_next_one(
-    process: LinkProcess, vehicle: UdpVehicle
-) -> None:
+def test_what_arrives_while_the_process_is_dead_is_heard_by_the_next_one(process, vehicle):
     with process.link() as link:
         vehicle.send(*(attitude(i) for i in range(100)))
         assert heard(link, 100) == list(range(100))
@@ -102,9 +98,7 @@ def test_what_arrives_while_the_process_is_dead_is_heard_by_the_next_one(
     assert "has ended and was started again; the recording goes on" in said
 
 
-def test_after_a_restart_a_silent_vehicle_is_lost_and_not_unheard_of(
-    process: LinkProcess, vehicle: UdpVehicle
-) -> None:
+def test_after_a_restart_a_silent_vehicle_is_lost_and_not_unheard_of(process, vehicle):
     with process.link() as link:
         vehicle.send(*(attitude(i) for i in range(100)))
         heard(link, 100)
@@ -122,9 +116,7 @@ def test_after_a_restart_a_silent_vehicle_is_lost_and_not_unheard_of(
         assert source.health().sentence.startswith("Nothing heard for ")
 
 
-def test_a_process_that_hangs_is_told_of_and_replaced(
-    process: LinkProcess, vehicle: UdpVehicle, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_process_that_hangs_is_told_of_and_replaced(process, vehicle, monkeypatch):
     monkeypatch.setattr(link_process, "HUNG_AFTER_S", 1.5)
     for module in (kept_link, health):
         monkeypatch.setattr(module, "OLD_AFTER_S", 0.5)

@@ -66,9 +66,7 @@ def same(a: list[Columns], b: list[Columns]) -> bool:
     )
 
 
-def test_what_is_heard_live_is_what_the_recording_replays(
-    port: int, vehicle: UdpVehicle, tmp_path: Path
-) -> None:
+def test_what_is_heard_live_is_what_the_recording_replays(port, vehicle, tmp_path):
     with Link(f"udpin:127.0.0.1:{port}", record_to=tmp_path / "own.tlog") as link:
         for i in range(200):
             vehicle.send(attitude(20 * i), *([heartbeat()] if i % 50 == 0 else []))
@@ -181,9 +179,7 @@ def test_a_local_socket_is_a_link_too(tmp_path: Path) -> None:
                 wait_until(lambda: stamps(link.read()) == [40.0])
 
 
-def test_silence_is_told_once_and_so_is_its_end(
-    port: int, vehicle: UdpVehicle, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_silence_is_told_once_and_so_is_its_end(port, vehicle, monkeypatch):
     monkeypatch.setattr("advisor.mavlink.link.link_watch.SILENCE_S", 0.3)
     with Link(f"udpin:127.0.0.1:{port}") as link:
         vehicle.send(heartbeat(), attitude(0))
@@ -197,9 +193,7 @@ def test_silence_is_told_once_and_so_is_its_end(
         assert link.statistics.silent_s < 0.5
 
 
-def test_another_station_talking_on_does_not_hide_that_the_vehicle_is_silent(
-    port: int, vehicle: UdpVehicle, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_another_station_talking_on_does_not_hide_that_the_vehicle_is_silent(port, vehicle, monkeypatch):
     monkeypatch.setattr("advisor.mavlink.link.link_watch.SILENCE_S", 0.3)
     station = UdpVehicle(port, system=255)
     with Link(f"udpin:127.0.0.1:{port}") as link:
@@ -235,9 +229,7 @@ def test_a_silence_is_not_mistaken_for_a_slower_stream() -> None:
             assert watch.look(attitude_at(now_s), now_s) == []
 
 
-def test_a_process_killed_without_warning_leaves_whole_records_up_to_its_last_second(
-    port: int, vehicle: UdpVehicle, tmp_path: Path
-) -> None:
+def test_a_process_killed_without_warning_leaves_whole_records_up_to_its_last_second(port, vehicle, tmp_path):
     own = tmp_path / "own.tlog"
     program = (
         "import sys, pathlib; from advisor.mavlink.link.link import Link\n"
@@ -261,9 +253,7 @@ def test_a_process_killed_without_warning_leaves_whole_records_up_to_its_last_se
     assert len(kept) >= 125 - 50
 
 
-def test_losses_duplicates_and_late_packets_are_counted_by_sequence_number(
-    port: int, vehicle: UdpVehicle
-) -> None:
+def test_losses_duplicates_and_late_packets_are_counted_by_sequence_number(port, vehicle):
     packets = [vehicle.pack(heartbeat())] + [vehicle.pack(attitude(20 * i)) for i in range(300)]
     order = [*range(100), 99, *range(103, 200), 201, 200, *range(202, 301)]
     with Link(f"udpin:127.0.0.1:{port}") as link:
@@ -329,9 +319,7 @@ def test_a_port_in_use_and_a_host_that_does_not_answer_are_refused_with_what_to_
         Link("/dev/no-such-line,57600", patience_s=0.0).start()
 
 
-def test_two_thousand_messages_a_second_arrive_without_loss_and_in_time(
-    port: int, vehicle: UdpVehicle
-) -> None:
+def test_two_thousand_messages_a_second_arrive_without_loss_and_in_time(port, vehicle):
     seconds, per_tick = 4.0, 10
     sent_at: dict[float, float] = {}
 

@@ -182,9 +182,7 @@ def test_a_home_that_takes_no_file_keeps_nobody_from_advising(advising: Advising
     assert len(records_of(recording)) == len(flight)
 
 
-def test_a_link_left_alone_records_until_a_new_flight_test_ends_it_and_says_how_to_resume(
-    advising: Advising,
-):
+def test_a_link_left_alone_records_until_a_new_flight_test_ends_it_and_says_how_to_resume(advising):
     advising.start()
     advising.kill()
     flight = until(FLIGHT, 8.0)

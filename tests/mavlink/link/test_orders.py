@@ -76,9 +76,7 @@ def test_to_follow_another_vehicle_sends_nothing(port: int, vehicles: list[UdpVe
                 vehicle.hear()
 
 
-def test_a_passive_link_asks_for_the_outputs_when_a_key_says_so_and_for_nothing_else(
-    port: int, vehicles: list[UdpVehicle]
-) -> None:
+def test_a_passive_link_asks_for_the_outputs_when_a_key_says_so_and_for_nothing_else(port, vehicles):
     vehicle = vehicles[0]
     with Link(f"udpin:127.0.0.1:{port}") as link:
         vehicle.send(heartbeat())

@@ -222,9 +222,7 @@ def test_a_stream_below_2_hz_a_pause_and_a_reboot_raise_no_alarm_of_rates() -> N
 
 
 @pytest.mark.parametrize(("hang_s", "kept_s"), [(1.2, 1.0), (2.0, 1.0), (7.0, 1.0), (12.0, 12.0)])
-def test_packets_that_waited_while_the_computer_slept_are_no_faster_stream(
-    hang_s: float, kept_s: float
-) -> None:
+def test_packets_that_waited_while_the_computer_slept_are_no_faster_stream(hang_s, kept_s):
     """The socket keeps some seconds of packets; those of the rest of a hang are lost."""
     watch, sender, said = RateWatch(), Sender(), []
     for tick in range(40 * 50):

@@ -17,9 +17,7 @@ from advisor.words.problems import UnusableInputError
 from tests.mavlink.link.builders import Sender, attitude, wait_until
 
 
-def test_what_was_written_is_on_the_disk_within_a_second_without_closing(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_what_was_written_is_on_the_disk_within_a_second_without_closing(tmp_path, monkeypatch):
     synced: list[int] = []
     monkeypatch.setattr(os, "fsync", lambda handle: synced.append(handle))
     recorder = Recorder(tmp_path / "a.tlog")
@@ -48,9 +46,7 @@ def test_a_place_where_nothing_can_be_written_is_refused_with_what_to_do(tmp_pat
         Recorder(tmp_path / "file" / "a.tlog")
 
 
-def test_what_a_full_disk_does_not_take_waits_and_is_written_when_there_is_room(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_what_a_full_disk_does_not_take_waits_and_is_written_when_there_is_room(tmp_path, monkeypatch):
     write, room = os.write, [6]
 
     def full(handle: int, data: bytes) -> int:
@@ -75,9 +71,7 @@ def test_what_a_full_disk_does_not_take_waits_and_is_written_when_there_is_room(
     recorder.close()
 
 
-def test_a_disk_that_does_not_answer_is_told_of_while_it_hangs(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_disk_that_does_not_answer_is_told_of_while_it_hangs(tmp_path, monkeypatch):
     free = threading.Event()
     monkeypatch.setattr(recorder_module, "OLD_AFTER_S", 0.2)
     monkeypatch.setattr(os, "fsync", lambda handle: free.wait(10.0))

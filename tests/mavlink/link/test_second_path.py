@@ -60,9 +60,7 @@ def samples(maneuvers: list[Maneuver]) -> list[np.ndarray]:
 
 
 @pytest.mark.parametrize("late_s", [0.05, 6.0, 15.0])
-def test_a_path_that_only_repeats_changes_no_number(
-    log: Path, once: CampaignState, tmp_path: Path, late_s: float
-) -> None:
+def test_a_path_that_only_repeats_changes_no_number(log, once, tmp_path, late_s):
     path = tmp_path / "two.tlog"
     path.write_bytes(heard_over(log, Way(), Way(late_s)))
     alone = [judged.maneuver for judged in once.maneuvers]
@@ -147,9 +145,7 @@ def test_how_a_log_of_two_paths_is_cut_into_pieces_does_not_matter(log: Path) ->
     assert pieces.statistics == whole.statistics
 
 
-def test_two_batteries_in_one_log_are_two_power_ons_though_the_stations_clock_was_set_back(
-    log: Path, tmp_path: Path
-) -> None:
+def test_two_batteries_in_one_log_are_two_power_ons_though_the_stations_clock_was_set_back(log, tmp_path):
     both = tmp_path / "both.tlog"
     both.write_bytes(log.read_bytes() + recorded("uav", 1.0, seed=12, maneuvers=TWO).read_bytes())
     maneuvers = flown(both)
@@ -157,9 +153,7 @@ def test_two_batteries_in_one_log_are_two_power_ons_though_the_stations_clock_wa
     assert [m.number for m in maneuvers] == [1, 2, 3, 4]
 
 
-def test_a_log_that_two_overlapping_logs_were_joined_to_counts_each_manoeuvre_once(
-    log: Path, once: CampaignState, tmp_path: Path
-) -> None:
+def test_a_log_that_two_overlapping_logs_were_joined_to_counts_each_manoeuvre_once(log, once, tmp_path):
     joined = tmp_path / "joined.tlog"
     joined.write_bytes(log.read_bytes() + log.read_bytes())
     twice = analyzed(joined)

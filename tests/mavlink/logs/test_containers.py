@@ -149,9 +149,7 @@ def test_a_corrupt_lzma_stream_is_told_like_any_other_damage(tmp_path: Path) -> 
 @pytest.mark.parametrize(
     "error", [ZeroDivisionError("float division by zero"), IndexError("19"), MemoryError()]
 )
-def test_whatever_breaks_a_reader_is_one_sentence_about_that_log(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, error: Exception
-) -> None:
+def test_whatever_breaks_a_reader_is_one_sentence_about_that_log(tmp_path, monkeypatch, error):
     def broken(*arguments: object) -> None:
         raise error
 
@@ -163,9 +161,7 @@ def test_whatever_breaks_a_reader_is_one_sentence_about_that_log(
     assert caught.value.__cause__ is error
 
 
-def test_a_small_file_that_unpacks_to_a_huge_one_is_refused_early(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_small_file_that_unpacks_to_a_huge_one_is_refused_early(tmp_path, monkeypatch):
     monkeypatch.setattr(unpack, "_SMALL_BYTES", 500_000)
     path = tmp_path / "flight.bin.gz"
     path.write_bytes(gzip.compress(dataflash_flight(2.0) + bytes(50_000_000)))

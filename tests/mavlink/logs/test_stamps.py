@@ -94,18 +94,14 @@ def flown(path: Path) -> tuple[FlightStream, list[Span]]:
 
 @pytest.mark.parametrize("change", CHANGES)
 @pytest.mark.parametrize("kind", ["bin", "ulg", "tlog"])
-def test_a_log_with_such_stamps_is_read_to_its_end(
-    kind: str, change: Callable[[Stamps], Stamps], tmp_path: Path
-) -> None:
+def test_a_log_with_such_stamps_is_read_to_its_end(kind, change, tmp_path):
     path = tmp_path / f"flight.{kind}"
     path.write_bytes(restamped(kind, change))
     stream, _ = flown(path)
     assert stream.vehicle is not None
 
 
-def test_a_log_that_holds_every_record_twice_gives_the_manoeuvres_of_one_that_holds_it_once(
-    tmp_path: Path,
-) -> None:
+def test_a_log_that_holds_every_record_twice_gives_the_manoeuvres_of_one_that_holds_it_once(tmp_path):
     once, twice = tmp_path / "once.bin", tmp_path / "twice.bin"
     once.write_bytes(sound("bin"))
     twice.write_bytes(b"".join(2 * piece for piece in pieces("bin")[0]))

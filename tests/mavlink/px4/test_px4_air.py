@@ -59,18 +59,14 @@ def test_the_sensor_that_the_autopilot_has_selected_counts(tmp_path: Path) -> No
 
 
 @pytest.mark.parametrize("source", ["airspeed_source", "selected_airspeed_index"])
-def test_ground_speed_minus_wind_is_no_measurement_and_said_where_nothing_else_is_there(
-    tmp_path, source
-) -> None:
+def test_ground_speed_minus_wind_is_no_measurement_and_said_where_nothing_else_is_there(tmp_path, source):
     estimated = log(calibrated_airspeed_m_s=23.0, rate_hz=5.0, **{source: np.int8(0)})
     speed, said = airspeed(estimated.write(tmp_path))
     assert set(speed.y.tolist()) == {23.0}
     assert "no sensor measured it" in said
 
 
-def test_a_sensor_that_the_autopilot_calls_invalid_is_used_only_for_want_of_another_and_said(
-    tmp_path,
-) -> None:
+def test_a_sensor_that_the_autopilot_calls_invalid_is_used_only_for_want_of_another_and_said(tmp_path):
     refused = log(calibrated_airspeed_m_s=np.nan, airspeed_source=np.int8(-1))
     speed, said = airspeed(refused.write(tmp_path))
     assert speed.y == pytest.approx(25.0)

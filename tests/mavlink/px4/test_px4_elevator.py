@@ -61,9 +61,7 @@ def test_the_output_whose_function_carries_the_elevators_servo_is_the_elevator(t
     assert first == pytest.approx(-STEP_RAD, rel=1e-3)
 
 
-def test_an_output_of_the_auxiliary_bank_counts_from_17_where_the_main_bank_drives_something(
-    tmp_path,
-) -> None:
+def test_an_output_of_the_auxiliary_bank_counts_from_17_where_the_main_bank_drives_something(tmp_path):
     wired = {k: v for k, v in PLANE.items() if not k.startswith("PWM_MAIN_FUNC4")} | {"PWM_AUX_FUNC2": 202}
     log = flight(**wired)
     with_outputs(log, {1: down, 3: 1700.0}, multi_id=1)

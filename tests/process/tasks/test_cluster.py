@@ -171,18 +171,14 @@ def test_a_scheduler_that_ends_in_the_middle_is_told_in_one_sentence() -> None:
 
 
 @pytest.mark.parametrize("address", ["8786", "host:8786", "http://host:8786", "tcp://host", "tcp://[:1"])
-def test_what_is_no_address_is_refused_with_an_example(
-    address: str, folder: Path, advisor: Advisor, tmp_path: Path
-) -> None:
+def test_what_is_no_address_is_refused_with_an_example(address, folder, advisor, tmp_path):
     run = advisor("batch", folder, "-o", tmp_path / "out", "--scheduler", address)
     assert (run.returncode, run.stderr.count("\n")) == (2, 1)
     assert "give one as tcp://host:8786" in run.stderr
 
 
 @pytest.mark.parametrize("listening", [False, True])
-def test_an_address_without_a_scheduler_is_told_within_seconds(
-    listening: bool, folder: Path, advisor: Advisor, tmp_path: Path
-) -> None:
+def test_an_address_without_a_scheduler_is_told_within_seconds(listening, folder, advisor, tmp_path):
     with socket.socket() as place:
         place.bind(("127.0.0.1", 0))
         if listening:
@@ -203,18 +199,14 @@ def test_a_cluster_without_workers_is_told() -> None:
         list(run_on_cluster(sleep, [0.0], cluster.scheduler_address, pytest.fail))
 
 
-def test_without_dask_the_extra_is_named(
-    folder: Path, advisor: Advisor, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_without_dask_the_extra_is_named(folder, advisor, tmp_path, monkeypatch):
     monkeypatch.setitem(sys.modules, "distributed", None)
     run = advisor("batch", folder, "-o", tmp_path / "out", "--scheduler", "tcp://127.0.0.1:1")
     assert run.returncode == 2
     assert run.stderr == "--scheduler needs Dask: pip install 'inflight-advisor[cluster]'.\n"
 
 
-def test_processes_here_and_a_cluster_exclude_each_other(
-    folder: Path, advisor: Advisor, tmp_path: Path
-) -> None:
+def test_processes_here_and_a_cluster_exclude_each_other(folder, advisor, tmp_path):
     run = advisor("batch", folder, "-o", tmp_path, "--workers", 1, "--scheduler", "tcp://127.0.0.1:1")
     assert run.returncode == 2
     assert "not both" in run.stderr
