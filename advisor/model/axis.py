@@ -139,7 +139,9 @@ class Axis:
     seen: tuple[Read, ...] = ()
     """Terms of the outputs."""
     open: tuple[Place, ...] = ()
-    """Open numbers: errors of known signals and arms of sensors, whose columns the kernel computes."""
+    """Open numbers: errors of known signals. They change the motion, so the kernel computes their columns."""
+    instruments: tuple[Place, ...] = ()
+    """Places whose values the known factors need: the open numbers, and arms of sensors."""
     bank: str = ""
     """State whose sine and cosine enter; empty for none."""
     yaw: str = ""
@@ -161,7 +163,7 @@ class Axis:
     clocks: tuple[str, ...] = ()
     """Outputs whose stamps may be late relative to the rates."""
     arms: tuple[str, ...] = ()
-    """Outputs whose sensor's arm is estimated where the aircraft file does not state it."""
+    """Outputs of vanes, whose arm is estimated where the aircraft file does not state it, else an effect."""
     errors: Mapping[Place, float] = field(default_factory=dict)
     """Prior standard deviation of the error of each known signal that is estimated."""
     follows: Mapping[str, tuple[str, str]] = field(default_factory=dict)
@@ -180,8 +182,6 @@ class Axis:
     """Output that each sensor block measures, by the block's name."""
     readings: Mapping[str, tuple[str, str, str]] = field(default_factory=dict)
     """For each output its name in words, the effect of late stamps, and the block of its scale error."""
-    vane: str = ""
-    """Output of the vane whose distance from the centre of gravity is an effect where the file states it."""
     propeller: tuple[str, str, str] = ("", "", "")
     """Control whose deflection states the propeller's moment, the moment in words, and its sentence."""
     gust: tuple[str, str, str] = ("", "", "")
@@ -254,6 +254,7 @@ class Axis:
         rows = [
             (self.outputs.index(r.output), self.states.index(r.state) + n * r.of_rate, *self._numbered(r))
             for r in self.seen
+            if r.number is None or r.number in self.open
         ]
         return np.array(rows, np.int64).reshape(-1, 5)
 

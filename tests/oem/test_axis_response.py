@@ -61,7 +61,7 @@ def test_sensitivities_are_the_derivatives_of_the_outputs(lateral):
 def test_the_column_of_an_open_number_is_the_slope_of_the_outputs(lateral, name):
     local = lateral[1]
     record = flown(JET, aileron=aileron_doublet(T), rudder=rudder_doublet(T), seconds=8.0, initial=INITIAL)
-    at = dict(zip(LATERAL.open, (0.03, 0.02, 1.5, 0.4), strict=True))
+    at = dict(zip(LATERAL.instruments, (0.03, 0.02, 1.5, 0.4), strict=True))
     problem, motion = AxisProblem(LATERAL, (record,), values=at), AxisMotion(LATERAL)
 
     def outputs(step):

@@ -123,9 +123,9 @@ def axis_effects(flown: Flown) -> Iterator[AxisEffect]:
             yield _sized(of, replace(SCALE, block=block), ((of, "scale"),), {"pitch rate": spoken})
     if axis.force in measured:
         yield AxisEffect(axis.force, ARM, ((axis.force, "arm_m"),), (_ARM_STD_M,))
-    if axis.vane in measured and flown.arm_is_stated:
-        vane = replace(ARM, effect="alpha_vane_offset", block="alpha_sensor")
-        yield AxisEffect(axis.vane, vane, ((axis.vane, "arm_m"),), (_ARM_STD_M,))
+    vane = replace(ARM, effect="alpha_vane_offset", block="alpha_sensor")
+    for of in measured.intersection(axis.arms) if flown.arm_is_stated else ():
+        yield AxisEffect(of, vane, ((of, "arm_m"),), (_ARM_STD_M,))
     if axis.propeller[0] and _throttle_moves(flown):
         yield _propeller(*axis.propeller)
 

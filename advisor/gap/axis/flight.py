@@ -41,8 +41,6 @@ LIKELY = 0.01
 """Probability above which an effect is also fitted with gusts, and above which its sizes are stated."""
 SEARCHES = 4
 """Numerical: largest number of searches for the plain model, each from the likeliest effect's derivatives."""
-SEARCH = "search of the derivatives alone"
-"""Name of the part that fails when the last search still finds a likelier plain model."""
 _STEPS = 2
 """Numerical: number of Gauss-Newton steps from the optimum in white noise to the optimum in gusts."""
 
@@ -107,7 +105,9 @@ class AxisFlight:
             # The plain model had ended in a local minimum, and so had all models that began there.
             plain = again
         else:
-            self.parts.ended(f"{self.case.axis.name}, {SEARCH}", f"no end after {SEARCHES} searches")
+            self.parts.ended(
+                f"{self.case.axis.name}, search of the derivatives alone", f"no end after {SEARCHES} searches"
+            )
         plain = everyone[0].fit
         # What the likeliest model still lacks is an error of every model.
         share = colour_share(max(everyone, key=lambda s: s.likelihood).fit, lacking=True)

@@ -187,9 +187,10 @@ LATERAL = Axis(
         Read("p", "p"), Read("r", "r"), Read("bank", "bank"), Read("beta", "beta"), Read("beta", "r", "vane"),
         Read("a_y", "beta", "V", of_rate=True), Read("a_y", "r", "seat", of_rate=True),
         Read("beta", "r", "vane", False, _AIR, -1.0), Read("a_y", "beta", "V", True, _AIR),
-        Read("beta", "r", "1/V", False, _VANE), Read("a_y", "r", CONSTANT, True, _SEAT),
+        Read("beta", "r", "1/V", False, _VANE),
     ),
-    open=(_AIR, _ALPHA, _VANE, _SEAT),
+    open=(_AIR, _ALPHA),
+    instruments=(_AIR, _ALPHA, _VANE, _SEAT),
     bank="bank",
     yaw="r",
     needed=("p", "r", "bank"),
@@ -221,7 +222,6 @@ LATERAL = Axis(
         "a_y": ("lateral acceleration", "accelerometer_skew", "accelerometer"),
         "beta": ("sideslip", "alpha_skew", "alpha_sensor"),
     },
-    vane="beta",
     example="L_p",
     propeller=("aileron", "propeller roll", "The propeller rolls the real aircraft"),
     gust=("side gusts", "side_gusts", "sigma_v_m_s"),
@@ -248,7 +248,7 @@ class Trim:
     def around(self) -> Around:
         """Known signals of the flight, for ``Axis.linear``, with ideal instruments."""
         signals = {"airspeed": self.airspeed_m_s, "alpha": self.alpha_rad, "theta": self.theta_rad, "q": 0.0}
-        return {**dict.fromkeys(LATERAL.open, 0.0), **signals}
+        return {**dict.fromkeys(LATERAL.instruments, 0.0), **signals}
 
 
 def state_matrix(theta: FloatArray, trim: Trim) -> FloatArray:

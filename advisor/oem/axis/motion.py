@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from advisor.model.axis import Axis, Names, Place
+from advisor.model.axis import CONSTANT, Axis, Names, Place
 from advisor.model.axis_response import respond_axis
 from advisor.oem.axis.parameter import Parameter
 from advisor.oem.axis.problem import TERM, AxisAssembly, AxisProblem, causes_of, lay_out
@@ -108,10 +108,7 @@ def outputs_of(laid: AxisAssembly, shared: FloatArray, local: FloatArray) -> Flo
 def column_of(
     place: Place, value: float, laid: AxisAssembly, local: FloatArray, simulated: Simulated
 ) -> FloatArray | None:
-    """Return the derivative of the outputs by the value at a place, shape (N,).
-
-    None if the pass that simulates the outputs does not give this derivative.
-    """
+    """Return the outputs' derivative (N,) by the value at a place; None if the simulation lacks it."""
     axis, (y, g, motion), grid = laid.axis, simulated, laid.grid
     of, entry = place
     if place in axis.open:
@@ -120,7 +117,7 @@ def column_of(
         return column / (1.0 + value) if entry == "excess" else column
     if place in laid.causes:
         return np.asarray(g[:, axis.count + len(axis.open) + laid.causes.index(place)])
-    if of not in axis.outputs or entry not in ("delay_s", "scale"):
+    if of not in axis.outputs or entry not in ("delay_s", "scale", "arm_m"):
         return None
     column, output = np.zeros(len(y)), axis.outputs.index(of)
     rows = laid.channel == output
@@ -129,13 +126,16 @@ def column_of(
         shift = local[laid.owner[rows], bias] if bias >= 0 else 0.0
         column[rows] = (y[rows] - shift) / grid.scale[output]
         return column
-    terms = [read.output == of and read.number is None for read in axis.seen]
-    if any(read.of_rate for read, is_one in zip(axis.seen, terms, strict=True) if is_one):
+    number, sign, order = (None, -1.0, 1) if entry == "delay_s" else (place, 1.0, 0)
+    terms = [read for read in axis.seen if read.output == of and read.number == number]
+    if not terms or any(read.of_rate for read in terms):
         return None  # the rates have no rates of their own
     row = grid.row[output]
     events, row = np.flatnonzero(row >= 0), row[row >= 0]
-    for state, factor in axis.seen_rows[terms][:, 1:3]:
-        column[row] -= grid.scale[output] * grid.known[events, factor] * motion[events, 1, state]
+    for read in terms:
+        factor = grid.known[events, (CONSTANT, *axis.factors).index(read.factor)]
+        seen = motion[events, order, axis.states.index(read.state)]
+        column[row] += sign * grid.scale[output] * factor * seen
     return column
 
 

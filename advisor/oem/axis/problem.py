@@ -133,15 +133,14 @@ class AxisProblem:
     def trim(self, m: int) -> dict[str | Place, float]:
         """Return the mean of each known signal of record ``m``, and the values of the instruments."""
         means = {name: float(np.mean(signal.y)) for name, signal in self.records[m].given.items()}
-        values: dict[str | Place, float] = {place: self.at(place) for place in self.axis.open}
+        values: dict[str | Place, float] = {place: self.at(place) for place in self.axis.instruments}
         values.update(means)
         return values | {"q": 0.0}
 
     def linear(self, theta: FloatArray, m: int, true: bool = True) -> Linear:
-        """Return the linear motion of manoeuvre ``m`` about its trim.
+        """Return the linear motion of record ``m`` about its trim, with derivatives ``theta`` (s,).
 
-        ``theta`` (s,) are the derivatives at the reference speed. ``true`` corrects the read air speed by its
-        excess.
+        ``true`` corrects the read air speed by its excess.
         """
         trim = self.trim(m)
         speed = trim["airspeed"]
@@ -156,7 +155,7 @@ class Surroundings(dict[str | Place, FloatArray | float]):
     """Known signals of a record at some times, corrected by the errors that the problem states."""
 
     def __init__(self, problem: AxisProblem, record: AxisRecord, t: FloatArray, steps: bool = False) -> None:
-        super().__init__({place: problem.at(place) for place in problem.axis.open})
+        super().__init__({place: problem.at(place) for place in problem.axis.instruments})
         self._problem, self._record, self._t, self._steps = problem, record, t, steps
 
     def __missing__(self, name: str) -> FloatArray:
