@@ -11,6 +11,7 @@ from advisor.campaign.campaign import Campaign
 from advisor.campaign.state import AxisState, CampaignState
 from advisor.mavlink.logs.logs import open_log
 from advisor.session.timeline import Timeline
+from tests.campaign import side_builders as side
 from tests.decision.campaigns import THETA, estimate
 from tests.flights import TWO, recorded
 
@@ -55,3 +56,11 @@ def test_a_slow_aircraft_needs_a_longer_free_response(states):
 
 def test_between_manoeuvres_nothing_is_recorded(states):
     assert not replace(states[-1], flying=None).is_recorded
+
+
+def test_a_test_of_roll_and_yaw_does_not_wait_for_the_response_in_pitch(states):
+    recorded_one = next(s for s in states if s.is_recorded)
+    nothing = {"pitch": AxisState((), recorded_one.flight_test, None)}
+    sideways = replace(recorded_one, axes={**nothing, "lateral": side.state(side.judged(1, "aileron"))})
+    assert sideways.tested_sideways is not None
+    assert not sideways.is_recorded

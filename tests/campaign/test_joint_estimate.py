@@ -138,9 +138,7 @@ class Fits:
         return self
 
 
-def asked_for_a_lag(
-    tells_lag: bool, count: int, one: Maneuver, monkeypatch: pytest.MonkeyPatch
-) -> list[list[int]]:
+def asked_for_a_lag(tells_lag, count, one, monkeypatch):
     fits = Fits(tells_lag, [])
     monkeypatch.setattr(joint_estimate, "fit_jointly", fits)
     accepted, together = [replace(one, number=k + 1) for k in range(count)], Together(Aircraft())

@@ -21,9 +21,7 @@ WELL_KNOWN = Aircraft(
 )
 
 
-def examined(
-    columns: list[Columns], aircraft: Aircraft = WELL_KNOWN, lost: float | None = None
-) -> Examination:
+def examined(columns, aircraft=WELL_KNOWN, lost=None):
     examiner = Examiner(aircraft)
     examiner.feed(columns)
     return examiner.findings(lost)

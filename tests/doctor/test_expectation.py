@@ -37,9 +37,7 @@ def stated(lag_s: float | None) -> Assumed:
     return replace(ASSUMED, aircraft=Aircraft(elevator=Elevator(lag_s=lag_s)))
 
 
-def flown(
-    model: ShortPeriod, unit_s: float, amplitude: float, dice: np.random.Generator, late_s: float = 0.0
-) -> Record:
+def flown(model, unit_s, amplitude, dice, late_s=0.0):
     """A 3-2-1-1 integrated by scipy on a fine grid, read at 50 Hz with noise, its command stamped late."""
     step_s = 0.002
     edges = 1.0 + unit_s * np.cumsum([0, *UNITS_OF_TIME])

@@ -171,9 +171,7 @@ def test_a_message_that_nobody_needs_may_come_as_it_likes() -> None:
     )
 
 
-def slow(
-    channels: tuple[str, ...], name: str, hz: float, arrives_hz: float, speed: float | None
-) -> list[tuple[str, bool]]:
+def slow(channels, name, hz, arrives_hz, speed):
     paced = {one: Paced(one, "ATTITUDE", 50.0, 50.0) for one in channels}
     paced[name] = Paced(name, "ATTITUDE", arrives_hz, hz)
     return [(limit.code, limit.stops) for limit in rate_limits(paced, ASSUMED, PLANE, speed)]

@@ -22,9 +22,7 @@ SPEED = 22.0
 MOTION = short_period_motion(SYSTEM, SPEED)
 
 
-def noise(
-    white: np.ndarray, coloured: np.ndarray, memory_s: float, gust: float, gust_memory_s: float
-) -> Noise:
+def noise(white, coloured, memory_s, gust, gust_memory_s):
     """Return noise without jolts."""
     return Noise(white, coloured, memory_s, np.zeros(1), gust, gust_memory_s)
 

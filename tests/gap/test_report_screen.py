@@ -2,7 +2,6 @@
 
 import io
 import shlex
-from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -65,9 +64,7 @@ def diagnosis(**changes: object) -> Diagnosis:
     return Diagnosis(**{**content, **changes})  # type: ignore[arg-type]
 
 
-def printed(
-    found: Diagnosis, columns: int, why: bool = False, steps: Sequence[GapStep] = (), everything: bool = True
-) -> list[str]:
+def printed(found, columns, why=False, steps=(), everything=True):
     """Return the screen as plain text, line by line."""
     out = io.StringIO()
     Console(file=out, width=columns, color_system=None, highlight=False).print(

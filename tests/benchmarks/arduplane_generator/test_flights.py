@@ -31,13 +31,7 @@ def airframe(seed: int = 1) -> Airframe:
     return draw_airframe(np.random.default_rng(seed))
 
 
-def accelerations(
-    plane: Airframe,
-    alpha: float = 0.0,
-    beta: float = 0.0,
-    rates: tuple[float, float, float] = (0, 0, 0),
-    controls: tuple[float, float, float] = (0.0, 0.0, 0.0),
-) -> np.ndarray:
+def accelerations(plane, alpha=0.0, beta=0.0, rates=(0, 0, 0), controls=(0.0, 0.0, 0.0)):
     """Return forces and moments of ArduPilot's plane about the trim, shape (6,)."""
     at = plane.alpha + alpha
     x = np.array([SPEED * np.cos(at), SPEED * np.sin(beta), SPEED * np.sin(at), *rates])

@@ -24,9 +24,7 @@ def sines(t: float, lines: tuple[int, ...]) -> float:
     return sum(np.sin(2.0 * np.pi * k * t / 10.0) for k in lines) / len(lines) if 0.0 < t < 10.0 else 0.0
 
 
-def three_surfaces(
-    begin_s: tuple[float, float, float], ends_by_mode: bool = False, seconds: float = 34.0
-) -> Wire:
+def three_surfaces(begin_s, ends_by_mode=False, seconds=34.0):
     """A flight with sums of sines of aileron, elevator and rudder that begin at these times."""
     wire = Wire()
     heartbeat(wire, 1000.0)

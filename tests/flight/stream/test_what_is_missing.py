@@ -1,6 +1,5 @@
 """Each reason for which a stream cannot serve, on hand-made arrivals of channels."""
 
-from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from math import nan
 
@@ -31,18 +30,9 @@ def arriving(*names: str, hz: float = 50.0, **slow: float) -> dict[str, ChannelS
     return {name: ChannelStatus(f"{name}.x", "measured", rate, 0.1, 9.0) for name, rate in rates.items()}
 
 
-def told(
-    channels: dict[str, ChannelStatus],
-    vehicle: Vehicle = PLANE,
-    surface: Surface | Problem | None = None,
-    maneuvers: int = 1,
-    seen: tuple[str, ...] = SENT,
-    others: tuple[int, ...] = (),
-    activities: Mapping[str, int] = {},
-    still: Sequence[Distrust] = (),
-) -> list[Problem]:
+def told(channels, vehicle=PLANE, surface=None, maneuvers=1, seen=SENT, others=(), activities=None, still=()):
     return suitability.problems(
-        vehicle, others, surface or elevator(), channels, maneuvers, activities, still, seen
+        vehicle, others, surface or elevator(), channels, maneuvers, activities or {}, still, seen
     )
 
 

@@ -8,12 +8,13 @@ from scipy.stats import multivariate_normal
 
 from advisor.aircraft.reference import SIDE_PARAMETERS
 from advisor.gap.axis.effects import axis_effects
-from advisor.gap.axis.fit import fitted, moved_by
+from advisor.gap.axis.fit import fitted, moved_by, outputs
 from advisor.gap.axis.flight import AxisFlight
 from advisor.gap.axis.gusts import Gusts, coloured_likelihood, gusts_of
 from advisor.gap.axis.laws import axis_laws, lacking
 from advisor.gap.axis.models import case_of
 from advisor.gap.axis.residual import residual_of
+from advisor.gap.axis.setting import moved_to
 from advisor.gap.axis.starts import Starts
 from advisor.gap.verdict.missing_law import law_in
 from advisor.model.axes.lateral import LATERAL
@@ -174,6 +175,15 @@ def test_a_fit_moves_as_its_derivatives_say_and_its_trims_follow(case, flight):
     assert np.max(np.abs(told)) > 1e-3
     weight = fit.weight
     assert np.linalg.norm(weight * (moved.fitted - fit.fitted - told)) < 0.1 * np.linalg.norm(weight * told)
+
+
+def test_a_delay_that_moves_the_first_event_leaves_the_first_states_on_the_motion(case, flight):
+    """A difference of late outputs is then the derivative that the simulated motion gives."""
+    fit, _, _ = flight
+    k = [f.place for f in fit.free].index(("bank", "delay_s"))
+    late = moved_to(fit.point.setting, [("bank", "delay_s")], fit.values[15 + k] + np.array([1e-3]))
+    change = outputs(case.flown, fit.point._replace(setting=late), fit.begun) - fit.fitted
+    assert np.max(np.abs(change / 1e-3 - fit.slopes[:, k])) < 0.02 * np.max(np.abs(fit.slopes[:, k]))
 
 
 @pytest.mark.parametrize(

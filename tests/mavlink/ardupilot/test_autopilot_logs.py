@@ -3,7 +3,6 @@
 import contextlib
 import math
 import tempfile
-from collections.abc import Mapping
 from pathlib import Path
 
 import numpy as np
@@ -61,12 +60,7 @@ def motion(t: float) -> tuple[float, float]:
     return theta, q
 
 
-def dataflash_flight(
-    seconds: float = FLIGHT_S,
-    changes: Mapping[float, int] | None = None,
-    switched: bool = False,
-    swept_axis: int | None = None,
-) -> bytes:
+def dataflash_flight(seconds=FLIGHT_S, changes=None, switched=False, swept_axis=None):
     """A flight; ``changes`` has the modes that it is put into, by the time in s. The texts of SystemID on
     ``swept_axis``, around the manoeuvre, are lost."""
     log = [dataflash_head()]

@@ -62,7 +62,9 @@ class Advising:
     @property
     def answers(self) -> bool:
         """Whether the newest start has said where it records."""
-        return "record" in self.warned
+        return any(
+            line.startswith(("recording to ", "nothing is recorded")) for line in self.warned.splitlines()
+        )
 
     def end(self, by: signal.Signals = signal.SIGINT) -> int:
         """Send a signal, and wait for the exit code."""

@@ -50,14 +50,7 @@ def analyzed(log: Path) -> list[str]:
     return verdicts(subprocess.run(command, capture_output=True, text=True).stdout.splitlines())
 
 
-def survives(
-    advising: Advising,
-    flight: Sequence[Record],
-    maneuvers: int,
-    victims: list[str],
-    speed: float,
-    hang_s: tuple[float, float] | None = None,
-) -> None:
+def survives(advising, flight, maneuvers, victims, speed, hang_s=None):
     """Fly while each victim in turn is struck, a random time after the one before is replaced.
 
     The flight goes on while a victim is replaced. It slows down when the next strike is due before that, so

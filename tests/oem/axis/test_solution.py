@@ -6,7 +6,7 @@ import pytest
 from advisor.model.axes.lateral import LATERAL
 from advisor.oem.axis import search as axis_search
 from advisor.oem.axis.motion import AxisMotion
-from advisor.oem.axis.problem import AxisProblem
+from advisor.oem.axis.problem import AxisProblem, lay_out
 from advisor.oem.axis.search import (
     not_identifiable,
     priors_of,
@@ -101,6 +101,14 @@ def test_derivatives_are_given_at_the_reference_speed():
     at_half = solved(AxisProblem(LATERAL, (record,), reference_airspeed_m_s=65.0))
     assert at_half.theta[place("L_beta")] == pytest.approx(JET["L_beta"] / 4.0, rel=1e-3)
     assert at_half.theta[place("L_p")] == pytest.approx(JET["L_p"] / 2.0, rel=1e-3)
+
+
+def test_without_side_force_and_sideslip_only_the_damping_of_the_force_is_free():
+    laid = lay_out(both_inputs(JET, measured=("p", "r", "bank")))
+    free = {LATERAL.names.shared[k] for k in laid.free if k < 15}
+    assert {name for name in LATERAL.names.shared if name not in free} == {
+        "Y_p", "Y_r", "Y_delta_a", "Y_delta_r",
+    }  # fmt: skip
 
 
 def test_without_side_force_and_sideslip_no_derivative_is_told():

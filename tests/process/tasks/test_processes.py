@@ -85,3 +85,8 @@ def test_workers_end_when_the_program_is_killed(tmp_path: Path) -> None:
     while is_alive(worker) and time.monotonic() < until:
         time.sleep(0.05)
     assert not is_alive(worker)
+
+
+def test_one_thread_of_linear_algebra_is_set_before_numpy_reads_their_number():
+    loaded = list(sys.modules)
+    assert loaded.index("advisor.process.tasks.pinned") < loaded.index("numpy")
