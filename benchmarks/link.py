@@ -85,7 +85,7 @@ def measure(seconds: float, rate: float) -> None:
     with (
         tempfile.TemporaryDirectory() as folder,
         LinkProcess(
-            Keeping(f"udpin:127.0.0.1:{port}", new_door(), 254, record_to=Path(folder) / "own.tlog")
+            Keeping(f"udpin:127.0.0.1:{port}", new_door(), record_to=Path(folder) / "own.tlog")
         ) as process,
         process.link() as link,
     ):

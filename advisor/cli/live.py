@@ -64,13 +64,6 @@ if TYPE_CHECKING:
     metavar="FILE",
     help="File with a key: sign sent packets, and refuse packets without its signature.",
 )
-@click.option(
-    "--source-system",
-    type=click.IntRange(1, 255),
-    default=254,
-    show_default=True,
-    help="System id of the advisor.",
-)
 def command(
     asked: LogsAsked,
     master: str | None,
@@ -82,7 +75,6 @@ def command(
     announce_to: str | None,
     uplink: bool,
     signing_key: Path | None,
-    source_system: int,
     show: Show | None = None,
 ) -> None:
     """Advise during a flight. Nothing is sent to the vehicle unless an option here asks for it.
@@ -120,7 +112,7 @@ def command(
     mine = start.goes_on or not (start.recording and start.recording.exists())
     by_hand = NOTHING if asked.no_marks else _decided((*start.earlier, start.recording if mine else None))
     keeping = Keeping(
-        start.campaign.master, new_door(), source_system, start.campaign.target_system, start.recording,
+        start.campaign.master, new_door(), start.campaign.target_system, start.recording,
         start.goes_on, read_key(signing_key) if signing_key else None, request_rates,
         announce or announce_to is not None, announce_to, uplink,
     )  # fmt: skip

@@ -2,7 +2,6 @@
 
 import re
 import sys
-from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -12,7 +11,6 @@ from advisor.cli.log_options import LogsAsked
 from advisor.cli.page_content import gather
 from advisor.report.page import drawing
 from advisor.report.page.render import page
-from tests.campaign.states import changed
 from tests.conftest import Advisor
 from tests.flights import SHIPPED
 from tests.full_disk import files_of_at_most
@@ -111,17 +109,3 @@ def test_a_full_disk_leaves_the_old_page_and_no_half_one(advisor, reported, tmp_
     assert answer.stderr.startswith(f"-o: {out} cannot be written to: File too large.")
     assert [path.name for path in tmp_path.iterdir()] == ["page.md"]
     assert out.read_text(encoding="utf-8") == "the page of yesterday"
-
-
-def test_the_last_manoeuvre_is_predicted_by_those_before_it(reported: Reported) -> None:
-    assert "Manoeuvre 3 is held out: manoeuvres 1, 2 predict its response." in reported.page.text
-    captions = re.findall(
-        r"Manoeuvre 3, (\S+): the largest half-width of the prediction's band is", reported.page.text
-    )
-    assert captions == ["α", "q", "a_z"]
-
-
-def test_without_three_accepted_manoeuvres_nothing_is_predicted(reported: Reported) -> None:
-    state = changed(reported.content.state, maneuvers=reported.content.state.maneuvers[:2])
-    text = page(replace(reported.content, state=state), "md")
-    assert "A prediction needs at least 3 accepted manoeuvres." in text

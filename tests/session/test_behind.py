@@ -45,7 +45,7 @@ HEARD = LinkStatistics(connected=True, vehicle=(1, 1), messages_per_s=400.0, new
 def flown(folder: Path) -> Iterator[tuple[LinkProcess, UdpVehicle]]:
     """The process of a link, and a vehicle that sends ten times a second until the context ends."""
     keeping = Keeping(
-        f"udpin:127.0.0.1:{free_port()}", new_door(), 254, record_to=folder / "a.tlog", announce=True
+        f"udpin:127.0.0.1:{free_port()}", new_door(), record_to=folder / "a.tlog", announce=True
     )
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("XDG_DATA_HOME", str(folder / "data"))

@@ -87,7 +87,6 @@ class Keeper:
         self._uplink = Uplink() if keeping.uplink else None
         self._link = Link(
             keeping.master,
-            source_system=keeping.source_system,
             target_system=keeping.target_system,
             record_to=keeping.record_to,
             goes_on=keeping.goes_on,

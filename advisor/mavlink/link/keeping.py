@@ -53,7 +53,6 @@ class Keeping:
     master: str
     """Connection, as in pymavlink."""
     door: Door
-    source_system: int
     target_system: int | None = None
     record_to: Path | None = None
     goes_on: bool = False

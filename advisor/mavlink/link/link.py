@@ -81,7 +81,6 @@ class Link:
         self,
         connection: str,
         *,
-        source_system: int = OWN_SYSTEM,
         target_system: int | None = None,
         record_to: Path | None = None,
         goes_on: bool = False,
@@ -94,7 +93,7 @@ class Link:
         self._record_to, self._goes_on = record_to, goes_on
         self._patience_s = patience_s
         greeting = [Heartbeat()] if self.address.speaks_first else []
-        self._conversation = Conversation([*talkers, *greeting], (source_system, OWN_COMPONENT), key)
+        self._conversation = Conversation([*talkers, *greeting], (OWN_SYSTEM, OWN_COMPONENT), key)
         signatures = SignatureCheck(key) if key is not None else None
         self._intake = Intake(CRC_EXTRA, target_system, signatures)
         self._target_system = target_system

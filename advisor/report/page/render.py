@@ -22,17 +22,16 @@ from advisor.report.page.flying_qualities import flying
 from advisor.report.page.gap import gap
 from advisor.report.page.headline import headline
 from advisor.report.page.maneuvers import maneuvers
-from advisor.report.page.prediction import prediction
 from advisor.report.page.vibration import vibration
 from advisor.words.quantities import CHANNELS
 
 PageFormat = Literal["html", "md"]
 _PARTS: tuple[Part, ...] = (
-    headline, flight_picture, gap, estimates, criterion, flying, maneuvers, fits, prediction, lateral,
-    fields, vibration, telemetry, assumptions, provenance,
+    headline, flight_picture, gap, estimates, criterion, flying, maneuvers, fits, lateral, fields,
+    vibration, telemetry, assumptions, provenance,
 )  # fmt: skip
 
-_OF_PITCH = frozenset({estimates, criterion, flying, maneuvers, fits, prediction})
+_OF_PITCH = frozenset({estimates, criterion, flying, maneuvers, fits})
 """Parts of the page that a flight without an elevator test input lacks."""
 
 

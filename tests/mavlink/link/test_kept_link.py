@@ -42,7 +42,7 @@ def vehicle(process: LinkProcess) -> Iterator[UdpVehicle]:
 
 
 def keeping(port: int, recording: Path | None) -> Keeping:
-    return Keeping(f"udpin:127.0.0.1:{port}", new_door(), 254, record_to=recording)
+    return Keeping(f"udpin:127.0.0.1:{port}", new_door(), record_to=recording)
 
 
 def heard(link: KeptLink, count: int) -> list[float]:
