@@ -15,13 +15,10 @@ from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.gap.inference.prior import FIELD, FieldPrior
 from advisor.oem.estimate import Estimate, NoEstimate
 from advisor.oem.estimator import estimate_jointly
-from advisor.simulators.agreed import agreeing
 from advisor.simulators.by_log import IdentifiedSimulator
-from advisor.simulators.compare import Compared, compare
-from advisor.simulators.file_model import compare_to_file
-from advisor.simulators.flying import Progress
+from advisor.simulators.compare import Compared, agreeing, compare, compare_to_file
 from advisor.simulators.linear import LinearSimulator
-from advisor.simulators.protocol import Simulator
+from advisor.simulators.protocol import Progress, Simulator
 from advisor.simulators.specification import simulator_of
 from advisor.simulators.speed_kind import by_the_motion
 from advisor.words.problems import UnusableInputError

@@ -19,7 +19,7 @@ from advisor.model.mil_f_8785c import LevelFound
 from advisor.oem.estimate import Estimate
 from advisor.oem.flying_qualities import Quality
 from advisor.report.qualities import levels_of, qualities_of, trim_of
-from advisor.simulators.flying import Progress
+from advisor.simulators.protocol import Progress
 from advisor.words.axes import AxisName
 from advisor.words.problems import UnusableInputError
 

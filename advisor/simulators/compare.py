@@ -11,24 +11,26 @@ from functools import partial
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.flight.maneuvers.maneuver import Maneuver
-from advisor.gap.diagnose import Examined, examine
+from advisor.gap.diagnose import Examined, examine, without_simulator
 from advisor.gap.effects import EFFECTS
 from advisor.gap.inference.findings import Findings
 from advisor.gap.inference.prior import FIELD, FieldPrior
 from advisor.gap.records.prepare import as_stamped, prepare
 from advisor.gap.records.unmeasured_alpha import alpha_by_motion, is_known
-from advisor.gap.result import Diagnosis
+from advisor.gap.result import Diagnosis, Value
+from advisor.gap.search.baseline import prior_derivatives
+from advisor.oem.estimate import Estimate, NoEstimate
 from advisor.simulators.air import still_air_said
-from advisor.simulators.as_given import GivenSimulator, given_of
-from advisor.simulators.flying import Progress, without_difference
-from advisor.simulators.improved import EQUATIONS, in_simulator, where_it_acts
+from advisor.simulators.as_given import GivenSimulator, given_of, without_difference
+from advisor.simulators.improved import in_simulator, where_it_acts
+from advisor.simulators.increments import EQUATIONS
 from advisor.simulators.linear import LinearSimulator
-from advisor.simulators.mirror import Mirror
-from advisor.simulators.mirrored import said_of_the_simulator
-from advisor.simulators.protocol import Simulator
+from advisor.simulators.mirror import Mirror, said_of_the_simulator
+from advisor.simulators.protocol import Progress, Simulator
 from advisor.simulators.static_errors import with_static_errors
 from advisor.simulators.taken_back import with_unseen_shrink, without_worse
 from advisor.simulators.unseen import Flown, UnseenManeuvers, changes_something, resaid, shrink_on, unseen_of
+from advisor.words.quantities import PARAMETERS
 
 _FLIES, _DIAGNOSED, _FOUND = 0.2, 0.9, 0.95
 """Fractions of the work that are done after the first replays, after the diagnosis, and after the corrected
@@ -133,3 +135,57 @@ def _without_equations(aircraft: Aircraft) -> Aircraft:
     """Return the aircraft file without effects of the force and of the moment."""
     kept = {e: sizes for e, sizes in aircraft.effects.items() if EFFECTS[e].block not in EQUATIONS}
     return replace(aircraft, effects=kept)
+
+
+def compare_to_file(
+    maneuvers: Sequence[Maneuver],
+    aircraft: Aircraft,
+    holdout: int | None,
+    progress: Progress,
+    prior: FieldPrior,
+) -> Compared:
+    """Diagnose the gap of manoeuvres to the file's model, and measure its reduction on held-out manoeuvres.
+
+    Raises
+    ------
+    UnusableInputError
+        The manoeuvres cannot be used.
+    """
+    whole = stays = examine(maneuvers, aircraft, holdout, progress, prior)
+    diagnosis = whole.diagnosis
+    if prior_derivatives(aircraft) is None:
+        diagnosis = without_simulator(diagnosis, aircraft)
+    elif changes_something(diagnosis):
+        progress("measuring the gap's reduction on held-out manoeuvres", 0.9)
+        unseen = unseen_of(whole, holdout)
+        if unseen is not None:
+            stays = with_unseen_shrink(whole, unseen, aircraft)
+            diagnosis = stays.diagnosis
+    return Compared(with_static_errors(diagnosis, whole), aircraft, stays.findings)
+
+
+def agreeing(diagnosis: Diagnosis, logged: Estimate | NoEstimate) -> Diagnosis:
+    """Return a diagnosis whose derivatives agree with an estimate within their 95 % intervals.
+
+    The estimate is made without a simulator. A significant difference between two analyses of one log is a
+    lower bound of both errors. A derivative whose wider interval contains the simulator's value is not stated
+    as changed.
+
+    Parameters
+    ----------
+    logged
+        Estimate from all manoeuvres together, as logged.
+    """
+    if isinstance(logged, NoEstimate):
+        return diagnosis
+    estimated = zip(logged.names, logged.theta.tolist(), logged.std.tolist(), strict=True)
+    others = {name: Value(x, std) for name, x, std in estimated if name not in logged.not_identifiable}
+    shared = [derivative.name for derivative in diagnosis.derivatives if derivative.name in others]
+    model = {**diagnosis.model, **{name: diagnosis.model[name].agreeing(others[name]) for name in shared}}
+    wider = [PARAMETERS[name].symbol for name in shared if model[name] != diagnosis.model[name]]
+    derivatives = tuple(
+        replace(derivative, found=model[derivative.name]) for derivative in diagnosis.derivatives
+    )
+    said = f"The intervals of {', '.join(wider)} contain those of advisor analyze, which lie elsewhere."
+    notes = (*diagnosis.notes, *([said] if wider else []))
+    return replace(diagnosis, model=model, derivatives=derivatives, notes=notes)

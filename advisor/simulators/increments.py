@@ -17,6 +17,8 @@ from advisor.gap.simulator.right_sides import right_sides
 from advisor.process.arrays import FloatArray
 from advisor.simulators.protocol import State
 
+EQUATIONS = ("force_equation", "moment_equation")
+"""Blocks whose effects are added inside a simulator, as increments."""
 _TRIMS = (INDEX["Z_trim"], INDEX["M_trim"])
 _CARRIED = np.isin(ENTRIES, (*DERIVATIVES, "Z_trim", "M_trim", *EQUATION_ENTRIES)) & ~np.isin(
     ENTRIES, PROPELLER.entries

@@ -1,7 +1,7 @@
 """Comparison of a flight with a JSBSim aircraft: ``jsbsim:MODEL`` or ``jsbsim:PATH/model.xml``."""
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 import numpy as np
@@ -12,13 +12,11 @@ from advisor.simulators.jsbsim_flight import FOOT_M, STEP_S, JsbsimFlight, Stead
 from advisor.simulators.jsbsim_model import FORCE, MOMENT, find_model
 from advisor.simulators.jsbsim_trim import trim
 from advisor.simulators.protocol import CONDITIONS, CONTROLS, Condition, Increments, Inputs, Replay
-from advisor.simulators.protocol import State as Motion
+from advisor.simulators.stepped import Stepping
 from advisor.words.problems import UnusableInputError
 
 _THRUST_SHARE = 0.01
 """Largest force along the flight path, over the weight, in a trimmed state."""
-_MOTION = ("alpha", "q", "theta", "a_z", "airspeed_m_s", "height_m", "a_x", "bank", "r", "p", "a_y", "beta")
-"""Names of the series in a replay."""
 _SHOWN = 6
 """Largest number of foreign properties in a sentence."""
 _PROBE = 1e-3
@@ -37,7 +35,7 @@ def make_jsbsim(model: str, aircraft: Aircraft) -> Isolated:
     return Isolated("advisor.simulators.jsbsim:Jsbsim", path, description=f"JSBSim {path.stem}")
 
 
-class Jsbsim:
+class Jsbsim(Stepping):
     """A JSBSim aircraft that flies recorded inputs (a simulator of the protocol).
 
     The recorded elevator is a deviation from the trimmed surface. The deviation is commanded at the pilot's
@@ -49,7 +47,8 @@ class Jsbsim:
 
     takes_increments = True
     takes = frozenset({*CONTROLS, *CONDITIONS})
-    speed_limit_s = 20.0
+    _dt = STEP_S
+    _reads_at = 1.0
 
     def __init__(self, path: Path) -> None:
         self.description = f"JSBSim {path.stem}"
@@ -60,52 +59,27 @@ class Jsbsim:
 
     def replay(self, condition: Condition, inputs: Inputs, increments: Increments | None = None) -> Replay:
         """Trim at the condition, and fly the inputs as deviations from the trimmed controls."""
+        self._moved = inputs.others
         try:
-            return self._fly(condition, inputs, increments)
+            replay = super().replay(condition, inputs, increments)
+            if not all(np.all(np.isfinite(getattr(replay, name))) for name in self._seen(condition)):
+                raise UnusableInputError(
+                    "simulator_diverges",
+                    f"{self.description} grows without limit in a replay of {replay.t[-1]:.3g} s.",
+                    "Shorten the manoeuvre, or check the model at the flown condition.",
+                )
         except Exception:
             # Engines and filters keep the state of a failed flight, so a new instance is loaded.
             self._flight = JsbsimFlight(self._path)
             raise
-
-    def _fly(self, condition: Condition, inputs: Inputs, increments: Increments | None) -> Replay:
-        flight, start = self._flight, self._trimmed(condition)
-        t = STEP_S * np.arange(math.ceil(inputs.t[-1] / STEP_S) + 1)
-        elevator = np.interp(t, inputs.t, inputs.elevator)
-        others = {name: np.interp(t, inputs.t, values) for name, values in inputs.others.items()}
-        lateral = {name: self._throw(name) for name in ("aileron", "rudder") if name in others}
-        throttle = others.get("throttle", np.zeros(t.size))
-        flight.release()
-        rows = np.empty((t.size, len(self._motion())))
-        rows[0] = self._motion()
-        for k in range(1, t.size):
-            flight.elevator(start.elevator + elevator[k])
-            if "throttle" in others:
-                flight.throttle(start.throttle + throttle[k])
-            for name, per_rad in lateral.items():
-                command = getattr(start, name) + per_rad * others[name][k]
-                flight.fdm[f"fcs/{name}-cmd-norm"] = min(max(command, -1.0), 1.0)
-            if increments is not None:
-                self._add(increments, t[k], elevator[k], throttle[k])
-            flight.fdm.run()
-            rows[k] = self._motion()
-        self._release_increments()
-        if not np.all(np.isfinite(rows)):
-            raise UnusableInputError(
-                "simulator_diverges",
-                f"{self.description} grows without limit in a replay of {t[-1]:.3g} s.",
-                "Shorten the manoeuvre, or check the model at the flown condition.",
-            )
-        trim = {"elevator": start.elevator}
-        if flight.engines and abs(start.axial) < _THRUST_SHARE * flight.fdm["inertia/weight-lbs"]:
-            trim["throttle"] = start.throttle
-        return Replay(t, **dict(zip(_MOTION, rows.T, strict=True)), trim=trim)
+        return replay
 
     def linearise(self, condition: Condition) -> Mapping[str, float] | None:
         """Return central differences of α̇ and q̇ about the trimmed state, at constant speed and flight path.
 
         A moment due to α̇ becomes part of the derivatives, as in the short-period model.
         """
-        start = self._trimmed(condition)
+        start = self._steady(condition)
         by_alpha = self._slopes(condition, start, alpha=_PROBE)
         by_q = self._slopes(condition, start, q=_PROBE)
         by_elevator = self._slopes(condition, start, elevator=_PROBE)
@@ -118,14 +92,42 @@ class Jsbsim:
             "M_delta_e": by_elevator[1],
         }
 
-    def close(self) -> None:
-        """Do nothing, because JSBSim runs in this process."""
-
-    def _trimmed(self, condition: Condition) -> SteadyState:
+    def _steady(self, condition: Condition) -> SteadyState:
         near = next(reversed(self._trims.values()), None)
         state = trim(self._flight, condition, self._trims.get(condition), near)
         self._trims[condition] = state
         return state
+
+    def _trimmed(self, condition: Condition) -> dict[str, float]:
+        self._rest = rest = self._steady(condition)
+        trim = {"alpha": rest.alpha, "elevator": rest.elevator}
+        if self._flight.engines and abs(rest.axial) < _THRUST_SHARE * self._flight.fdm["inertia/weight-lbs"]:
+            trim["throttle"] = rest.throttle
+        return trim
+
+    def _start(self, condition: Condition, trim: Mapping[str, float]) -> None:
+        self._throws = {name: self._throw(name) for name in ("aileron", "rudder") if name in self._moved}
+        self._hidden = self._rest.throttle - trim.get("throttle", 0.0)
+        self._flight.release()
+
+    def _step(self, controls: Mapping[str, float]) -> None:
+        flight = self._flight
+        flight.elevator(controls["elevator"])
+        if "throttle" in controls:
+            flight.throttle(self._hidden + controls["throttle"])
+        for name, per_rad in self._throws.items():
+            command = getattr(self._rest, name) + per_rad * controls[name]
+            flight.fdm[f"fcs/{name}-cmd-norm"] = min(max(command, -1.0), 1.0)
+        if "force" in controls:
+            slugs, speed = flight.fdm["inertia/mass-slugs"], flight.fdm["velocities/vt-fps"]
+            flight.fdm[f"{FORCE}/magnitude"] = controls["force"] * slugs * speed
+            flight.fdm[MOMENT] = controls["moment"] * flight.fdm["inertia/iyy-slugs_ft2"]
+        flight.fdm.run()
+
+    def _end(self) -> None:
+        self._flight.freeze()
+        self._flight.fdm[f"{FORCE}/magnitude"] = 0.0
+        self._flight.fdm[MOMENT] = 0.0
 
     def _slopes(
         self,
@@ -145,8 +147,8 @@ class Jsbsim:
         width = 2.0 * (alpha + q + elevator)
         return (rates[0][0] - rates[1][0]) / width, (rates[0][1] - rates[1][1]) / width
 
-    def _rates(self) -> tuple[float, float]:
-        """Return rates of α, rad/s, and of q, rad/s²."""
+    def _rates(self, rows: Sequence[Mapping[str, float]] = ()) -> tuple[float, float]:
+        """Return the model's own rates of α, rad/s, and of q, rad/s²."""
         fdm = self._flight.fdm
         u, v, w = (fdm[f"velocities/{axis}-aero-fps"] for axis in "uvw")
         # The wind stands still over the ground, and turns in the axes of the body.
@@ -180,47 +182,23 @@ class Jsbsim:
             return 0.0
         return math.copysign(1.0 / throw, seen[-1.0][1] - seen[1.0][1])
 
-    def _motion(self) -> tuple[float, ...]:
+    def _seen(self, condition: Condition) -> Mapping[str, float]:
         fdm = self._flight.fdm
         acceleration = FOOT_M / fdm["inertia/mass-slugs"]
-        return (
-            fdm["aero/alpha-rad"],
-            fdm["velocities/q-rad_sec"],
-            fdm["attitude/theta-rad"],
-            acceleration * fdm["forces/fbz-total-lbs"],
-            FOOT_M * fdm["velocities/vt-fps"],
-            FOOT_M * fdm["position/h-sl-ft"],
-            acceleration * fdm["forces/fbx-total-lbs"],
-            fdm["attitude/phi-rad"],
-            fdm["velocities/r-rad_sec"],
-            fdm["velocities/p-rad_sec"],
-            acceleration * fdm["forces/fby-total-lbs"],
-            fdm["aero/beta-rad"],
-        )
-
-    def _add(self, increments: Increments, t: float, elevator: float, throttle: float) -> None:
-        """Add the increments for the state in which the forces of the next step are evaluated."""
-        fdm = self._flight.fdm
-        alpha_dot, q_dot = self._rates()
-        speed = fdm["velocities/vt-fps"]
-        motion = Motion(
-            t,
-            fdm["aero/alpha-rad"] + STEP_S * alpha_dot,
-            alpha_dot,
-            fdm["velocities/q-rad_sec"] + STEP_S * q_dot,
-            elevator,
-            FOOT_M * speed,
-            FOOT_M * fdm["position/h-sl-ft"],
-            throttle,
-        )
-        force, moment = increments(motion)
-        fdm[f"{FORCE}/magnitude"] = force * fdm["inertia/mass-slugs"] * speed
-        fdm[MOMENT] = moment * fdm["inertia/iyy-slugs_ft2"]
-
-    def _release_increments(self) -> None:
-        self._flight.freeze()
-        self._flight.fdm[f"{FORCE}/magnitude"] = 0.0
-        self._flight.fdm[MOMENT] = 0.0
+        return {
+            "alpha": fdm["aero/alpha-rad"],
+            "q": fdm["velocities/q-rad_sec"],
+            "theta": fdm["attitude/theta-rad"],
+            "a_z": acceleration * fdm["forces/fbz-total-lbs"],
+            "airspeed_m_s": FOOT_M * fdm["velocities/vt-fps"],
+            "height_m": FOOT_M * fdm["position/h-sl-ft"],
+            "a_x": acceleration * fdm["forces/fbx-total-lbs"],
+            "bank": fdm["attitude/phi-rad"],
+            "r": fdm["velocities/r-rad_sec"],
+            "p": fdm["velocities/p-rad_sec"],
+            "a_y": acceleration * fdm["forces/fby-total-lbs"],
+            "beta": fdm["aero/beta-rad"],
+        }
 
 
 def _of_foreign(names: tuple[str, ...]) -> tuple[str, ...]:

@@ -12,27 +12,129 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from advisor.aircraft.aircraft import Aircraft
+from advisor.aircraft.standard_gravity import GRAVITY_M_S2
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.flight.signals.record import Channel
 from advisor.gap.candidates.catalogue import variants_for
 from advisor.gap.candidates.known import Effects, base_entries
-from advisor.gap.diagnose import examine
+from advisor.gap.diagnose import Examined, examine
+from advisor.gap.effects.pitch_rate_skew import EFFECT
 from advisor.gap.fitting.fit import fit
+from advisor.gap.fitting.measure import whole_gap
+from advisor.gap.fitting.problem import EffectProblem, SearchPoint
 from advisor.gap.inference.evidence import FlightProblem
 from advisor.gap.inference.pitch import PitchFlight, PitchModel
 from advisor.gap.inference.posterior import stated_as
 from advisor.gap.records.prepare import prepare
+from advisor.gap.result import Cause, Diagnosis, Value
 from advisor.gap.search.baseline import fit_baseline
 from advisor.gap.search.screen import Screen
 from advisor.gap.simulator.layout import DERIVATIVES
 from advisor.gap.verdict.causes import parameters_of
-from advisor.simulators.flying import AsGiven, Flying, beyond
+from advisor.gap.verdict.statements import what
+from advisor.gap.verdict.text import answers_of
+from advisor.process.arrays import FloatArray
+from advisor.simulators.as_given import AsGiven, Flying, beyond
 from advisor.simulators.improved import with_series
-from advisor.simulators.mirrored import negative_of
 from advisor.simulators.protocol import Replay
-from advisor.simulators.rate_filter import cause_of, lateness, unfiltered
 from advisor.simulators.surrogate import entries_of
+from advisor.simulators.unseen import floor_of, predicted, unknown_offset
+from advisor.words.certainty import as_sure
 from advisor.words.problems import UnusableInputError
+
+
+def said_of_the_simulator(whole: Examined, diagnosis: Diagnosis) -> Diagnosis:
+    """Return the diagnosis with the words and the gap of a simulator that has an effect too much."""
+    without = whole.findings.without
+    if without is None:
+        return diagnosis
+    first, before, after = diagnosis.causes[0], diagnosis.gap.before, _gap_without(whole, without)
+    removed = 100.0 * (1.0 - after / before)
+    sentence = f"{_said(first)}; without it the gap is {removed:.0f} % less."
+    where = replace(diagnosis.where, block=first.block, share=float(np.clip(removed / 100.0, 0.0, 1.0)))
+    simulated = diagnosis.in_simulator
+    if simulated is not None:
+        names = tuple(cause.effect for cause in diagnosis.causes if cause.present)
+        simulated = replace(
+            simulated, after=simulated.before, percent=0.0, on_paper=simulated.on_paper or names
+        )
+    return replace(
+        diagnosis, sentence=as_sure(sentence, answers_of(diagnosis.evidence)),
+        where=where, effects={}, waterfall=((first.effect, after),), shrink=None, in_simulator=simulated,
+    )  # fmt: skip
+
+
+def _gap_without(whole: Examined, problem: EffectProblem) -> float:
+    """Return the flight's gap to the simulator without its effects, with no parameter fitted."""
+    floor = floor_of(whole)
+    assert problem.prior_derivatives is not None
+    given = SearchPoint(problem.prior_derivatives, whole.findings.last.fitted.point.own)
+    plain, offset = whole.findings.models[0].fitted, unknown_offset(whole.diagnosis, None)
+    every = range(len(problem.flights))
+    return whole_gap(predicted(problem, given, plain, floor, every, offset).mean_square, floor)
+
+
+def _said(cause: Cause) -> str:
+    """Return the statement about a simulator effect of negative size."""
+    if cause.block == "input":
+        return what(cause)
+    read = what(negative_of(cause))
+    return f"In the simulator alone {read[0].lower()}{read[1:]}"
+
+
+def negative_of(cause: Cause) -> Cause:
+    """Return an effect of the simulator as a cause, with the negative of its size, because the aircraft lacks
+    the effect.
+    """
+    first, *rest = cause.parameters.items()
+    name, size = first
+    return replace(cause, parameters={name: Value(-size.value, size.std), **dict(rest)})
+
+
+def unfiltered(replay: Replay) -> Replay:
+    """Return the replay with a pitch rate computed from its own attitude."""
+    rate = np.gradient(replay.theta, replay.t)
+    if replay.bank is None:
+        return replace(replay, q=rate)
+    across, up = np.sin(replay.bank), np.cos(replay.bank)
+    if replay.r is not None:
+        return replace(replay, q=(rate + replay.r * across) / up)
+    turn = GRAVITY_M_S2 / replay.airspeed_m_s * across / up
+    return replace(replay, q=rate * up + turn * across)
+
+
+def lateness(replays: Sequence[Replay]) -> Value:
+    """Return the lag of the replays' pitch rate relative to the attitude's rate, s, by least squares."""
+    missing, rate = (np.concatenate(series) for series in zip(*map(_departure, replays), strict=True))
+    information = max(float(rate @ rate), 1e-300)
+    lag_s = float(rate @ missing) / information
+    rest = missing - lag_s * rate
+    return Value(lag_s, float(np.sqrt(np.mean(rest**2) / information)))
+
+
+def cause_of(late: Value, own: Diagnosis) -> Cause:
+    """Return the filter as a cause, with the size that the aircraft lacks.
+
+    Parameters
+    ----------
+    late
+        Lag of the simulator's pitch rate, s.
+    own
+        Diagnosis of the replays without the lag. The probability of the cause is that of the answer "nothing"
+        for these replays.
+    """
+    probabilities = own.probabilities
+    likeliness = 0.0 if probabilities is None else probabilities.none + probabilities.parameters
+    assert EFFECT.imitated_by is not None
+    looks, way = EFFECT.imitated_by
+    size = {"skew_s": Value(-late.value, late.std)}
+    return Cause(EFFECT.name, EFFECT.block, likeliness, size, (looks,), way, float("nan"), present=True)
+
+
+def _departure(replay: Replay) -> tuple[FloatArray, FloatArray]:
+    """Return attitude rate minus pitch rate, rad/s, and pitch acceleration, rad/s², shape (m,) each."""
+    return unfiltered(replay).q - replay.q, np.gradient(replay.q, replay.t)
+
 
 _BLOCKS = frozenset({"input", "alpha_sensor", "pitch_rate_sensor", "accelerometer", "timing"})
 """Blocks outside the physics: the actuator and the instruments."""

@@ -20,6 +20,10 @@ CONDITIONS = ("mass", "wind")
 """Parts of the flight condition that a simulator may ignore."""
 
 
+Progress = Callable[[str, float], None]
+"""Function that is told a step of the work, and the share of the work that is done."""
+
+
 @dataclass(frozen=True, slots=True)
 class Condition:
     """Steady, straight flight condition at the start of a manoeuvre."""

@@ -10,16 +10,36 @@ from advisor.aircraft.aircraft import Aircraft
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.gap.simulator.layout import DERIVATIVES
 from advisor.simulators.by_log import from_log
+from advisor.simulators.isolated import Isolated
 from advisor.simulators.linear import LinearSimulator
 from advisor.simulators.protocol import Factory, Simulator
 from advisor.words.problems import ConfigurationError
+
+_PARTS = 2
+
+
+def make_python(rest: str, aircraft: Aircraft) -> Simulator:
+    """Start a process that imports the module and calls the factory, without arguments.
+
+    Raises
+    ------
+    ConfigurationError
+        ``rest`` is not ``module:factory``, or the module or function does not exist.
+    """
+    parts = rest.split(":")
+    if len(parts) != _PARTS or not all(part.replace(".", "_").isidentifier() for part in parts):
+        raise ConfigurationError(
+            f"--simulator python:{rest}: name a module and a function, as in python:my_simulator:make."
+        )
+    return Isolated(rest, description=f"Python {rest}")
+
 
 GROUP = "inflight_advisor.simulators"
 """Entry points of other packages: a kind, and an ``advisor.simulators.protocol.Factory``."""
 _OURS = {
     "jsbsim": "advisor.simulators.jsbsim:make_jsbsim",
     "fmu": "advisor.simulators.fmu:make_fmu",
-    "python": "advisor.simulators.by_python:make_python",
+    "python": "advisor.simulators.specification:make_python",
 }
 _NEEDS = {"jsbsim": ("jsbsim", "jsbsim"), "fmu": ("fmpy", "fmu")}
 """Required package, and the extra of this project that installs it, for each kind of simulator."""

@@ -19,7 +19,7 @@ from advisor.gap.records.prepare import prepare
 from advisor.gap.result import Cause, Value
 from advisor.gap.simulator.layout import DERIVATIVES, ENTRIES, INDEX
 from advisor.gap.verdict.statements import what
-from advisor.simulators.flying import added
+from advisor.simulators.as_given import added
 from advisor.simulators.protocol import State
 from benchmarks.pages.planned import PLANS, described
 from tests.gap.generator import Setup, fly

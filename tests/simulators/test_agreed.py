@@ -11,8 +11,7 @@ from advisor.analysis import gap as reading
 from advisor.analysis.gap_flights import GapFlights
 from advisor.gap.result import ComparedDerivative, Value
 from advisor.oem.estimate import NoEstimate
-from advisor.simulators.agreed import agreeing
-from advisor.simulators.compare import Compared
+from advisor.simulators.compare import Compared, agreeing
 from tests.exports.models.test_orders import found
 from tests.simulators.nonlinear import Nonlinear, flown
 

@@ -16,8 +16,8 @@ from advisor.flight.signals.true_airspeed import standard_pressure
 from advisor.gap.records.prepare import prepare
 from advisor.gap.simulator.layout import HEIGHT
 from advisor.simulators.air import standard_heights
+from advisor.simulators.as_given import Flying
 from advisor.simulators.compare import compare
-from advisor.simulators.flying import Flying
 from advisor.simulators.linear import LinearSimulator
 from advisor.simulators.protocol import Condition
 from advisor.words.problems import UnusableInputError

@@ -10,7 +10,7 @@ from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.flight.signals.record import Channel
 from advisor.gap.records.prepare import prepare
 from advisor.gap.simulator.layout import BANK, ENTRIES
-from advisor.simulators.flying import Flying
+from advisor.simulators.as_given import Flying
 from advisor.simulators.inputs import other_controls
 from advisor.simulators.isolated import Isolated
 from advisor.simulators.protocol import Condition, Inputs

@@ -9,7 +9,7 @@ from advisor.aircraft.aircraft import Aircraft
 from advisor.gap.fitting.problem import EffectProblem
 from advisor.gap.records.prepare import prepare
 from advisor.gap.simulator.layout import DERIVATIVES, ENTRIES, INDEX
-from advisor.simulators.flying import Flying, added, beyond
+from advisor.simulators.as_given import Flying, added, beyond
 from advisor.simulators.linear import LinearSimulator
 from advisor.simulators.surrogate import Surrogate
 from tests.simulators.nonlinear import flown

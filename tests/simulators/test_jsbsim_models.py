@@ -215,11 +215,11 @@ def test_a_trim_begins_at_that_of_the_condition_before(monkeypatch: pytest.Monke
     monkeypatch.setattr(jsbsim_trim, "_steady", counted)
     one, fresh = Jsbsim(find_model("c172p")), Jsbsim(find_model("c172p"))
     first, second = Condition(53.0, 1800.0), Condition(53.2, 1801.0)
-    one._trimmed(first)
+    one._steady(first)
     begun = len(throttles)
-    after = one._trimmed(second)
+    after = one._steady(second)
     nearby, throttles[:] = throttles[begun:], []
-    alone = fresh._trimmed(second)
+    alone = fresh._steady(second)
     assert len(nearby) <= 4 < len(throttles)
     assert (after.alpha, after.elevator) == pytest.approx((alone.alpha, alone.elevator), abs=1e-5)
     assert abs(after.axial) < 1e-3 * one._flight.mass_slug / 0.3048  # of the force in lb

@@ -10,9 +10,8 @@ from advisor.gap.result import Cause, Value
 from advisor.gap.verdict.statements import what
 from advisor.simulators.around import lagging
 from advisor.simulators.compare import compare
-from advisor.simulators.mirrored import _said, negative_of
+from advisor.simulators.mirror import _said, lateness, negative_of
 from advisor.simulators.protocol import Condition, Inputs
-from advisor.simulators.rate_filter import lateness
 from tests.simulators.nonlinear import STEP_S, Nonlinear, flown
 
 

@@ -8,11 +8,11 @@ import pytest
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.simulators.around import lagging
-from advisor.simulators.by_python import make_python
 from advisor.simulators.fmu import FmuSimulator
 from advisor.simulators.jsbsim import make_jsbsim
 from advisor.simulators.jsbsim_model import find_model
 from advisor.simulators.protocol import Condition, Inputs, Replay, Simulator
+from advisor.simulators.specification import make_python
 from tests.simulators.test_fmu import NAMES
 
 pytest.importorskip("jsbsim")

@@ -18,7 +18,7 @@ from advisor.gap.inference.pitch import PitchModel
 from advisor.gap.records.prepare import prepare
 from advisor.gap.simulator.layout import DERIVATIVES, ENTRIES, INDEX, NUISANCES, OUTPUTS
 from advisor.oem.rows import Signal
-from advisor.simulators.flying import AsGiven, Flying, beyond
+from advisor.simulators.as_given import AsGiven, Flying, beyond
 from advisor.simulators.improved import where_it_acts
 from advisor.simulators.surrogate import Surrogate
 from tests.simulators.nonlinear import Nonlinear, flown

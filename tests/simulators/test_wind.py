@@ -16,7 +16,7 @@ from advisor.flight.signals.record import Channel
 from advisor.gap.records.prepare import prepare
 from advisor.mavlink.ardupilot.ardupilot_log import read_dataflash
 from advisor.simulators.air import still_air_said, winds
-from advisor.simulators.flying import Flying
+from advisor.simulators.as_given import Flying
 from advisor.simulators.isolated import Isolated
 from advisor.simulators.protocol import Condition, Inputs
 from advisor.simulators.stepped import Stepped

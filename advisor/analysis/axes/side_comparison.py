@@ -19,7 +19,7 @@ from advisor.model.axes.lateral import LATERAL
 from advisor.oem.axis.estimator import estimate_axis
 from advisor.oem.estimate import Estimate, NoEstimate
 from advisor.simulators.axes.side_difference import side_without_difference
-from advisor.simulators.flying import Progress
+from advisor.simulators.protocol import Progress
 from advisor.simulators.specification import simulator_of
 from advisor.words.problems import ConfigurationError, UnusableInputError
 

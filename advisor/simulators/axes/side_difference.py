@@ -27,9 +27,9 @@ from advisor.oem.solution import Solution
 from advisor.oem.surface import Servo
 from advisor.process.arrays import FloatArray
 from advisor.simulators.air import refuse_unknown_air, standard_heights, winds
-from advisor.simulators.flying import Progress, without
+from advisor.simulators.as_given import without
 from advisor.simulators.interface import control_fault, side_fault
-from advisor.simulators.protocol import CONTROLS, Condition, Inputs, Replay, Simulator
+from advisor.simulators.protocol import CONTROLS, Condition, Inputs, Progress, Replay, Simulator
 from advisor.words.problems import UnusableInputError
 from advisor.words.quantiles import NORMAL_95
 

@@ -33,7 +33,7 @@ from advisor.gap.records.prepare import as_stamped, prepare
 from advisor.gap.result import Diagnosis, spelled
 from advisor.gap.simulator.layout import DERIVATIVES, ENTRIES, INDEX
 from advisor.simulators.compare import Compared
-from advisor.simulators.flying import Progress
+from advisor.simulators.protocol import Progress
 from advisor.simulators.unseen import sized_without
 
 

@@ -35,7 +35,7 @@ from advisor.oem.axis.estimate import AxisEstimate
 from advisor.oem.axis.estimator import estimate_axis, predicted
 from advisor.oem.estimate import NoEstimate
 from advisor.process.arrays import FloatArray
-from advisor.simulators.flying import Progress
+from advisor.simulators.protocol import Progress
 from advisor.words.quantiles import NORMAL_95
 
 _Answer = TypeVar("_Answer")
