@@ -23,7 +23,7 @@ import click
 from advisor.aircraft.aircraft import Aircraft
 from advisor.flight.maneuvers.events import ManeuverFlown
 from advisor.flight.stream.stream import FlightStream
-from advisor.mavlink.logs.tlog import read_tlog
+from advisor.mavlink.logs.formats.telemetry import read_tlog
 from advisor.mavlink.wire.scan import STAMP_BYTES
 
 LOG = Path(__file__).parent.parent / "logs" / "arduplane-calm.tlog"

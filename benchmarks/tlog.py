@@ -25,7 +25,7 @@ from pymavlink import mavutil
 from pymavlink.dialects.v20 import ardupilotmega as dialect
 
 from advisor.flight.signals.messages import Columns
-from advisor.mavlink.logs.tlog import read_tlog
+from advisor.mavlink.logs.formats.telemetry import read_tlog
 
 WANTED = [
     "HEARTBEAT",

@@ -5,13 +5,15 @@ from collections.abc import Iterator, Sequence
 from textwrap import fill, indent
 
 import numpy as np
+from rich import box
 from rich.console import Console, ConsoleOptions, Group, RenderableType, RenderResult
 from rich.constrain import Constrain
 from rich.panel import Panel
 from rich.table import Table
 from rich.text import Text
 
-from advisor.gap.result import Diagnosis, spelled
+from advisor.aircraft.standard_gravity import GRAVITY_M_S2
+from advisor.gap.result import Diagnosis, InSimulator, Qualification, spelled
 from advisor.gap.verdict.notes import UNEXPLAINED
 from advisor.gap.verdict.text import limits_of
 from advisor.process.installed import SIMULATOR
@@ -21,8 +23,77 @@ from advisor.report.facts.gap import changes, grown_said, law_said, shrink_said,
 from advisor.report.facts.sizes import WORSE, named, short, with_error
 from advisor.report.gap_causes import PRESENT, ranking, unseen, why_of
 from advisor.report.gap_fidelity import errors, peaks, whereabouts, worst_maneuver, yardsticks
-from advisor.report.gap_simulator import simulated
 from advisor.report.gap_steps import GapStep
+from advisor.words.quantities import CHANNELS, Quantity
+
+_QUANTITIES = CHANNELS | {"a_z": Quantity("a_z", "g", 1.0 / GRAVITY_M_S2)}
+_LEGEND = (
+    "Largest error in any manoeuvre. Limits: 14 CFR Part 60 App. A, 2.c.10, short period: pitch or pitch "
+    "rate, and normal acceleration."
+)
+
+
+def simulated(inside: InSimulator, with_table: bool) -> Iterator[RenderableType]:
+    """Yield the simulator's gap before and after the effects are added. On request yield the table of
+    qualification too.
+    """
+    yield Text(f"in your simulator, {inside.simulator}", style="bold")
+    yield Text("\n".join(_shrunk(inside)))
+    if with_table:
+        yield _table(inside)
+        yield Text(_LEGEND, style="dim")
+
+
+def _shrunk(inside: InSimulator) -> Iterator[str]:
+    numbers = ", ".join(map(str, inside.maneuvers))
+    if inside.after is None or inside.percent is None:
+        yield f"gap {short(inside.before)} times the noise floor's power; nothing was flown with the effects"
+        return
+    if inside.after_air_and_instruments is None:
+        yield f"gap {short(inside.before)} times the noise floor's power; nothing was changed, so 0 % less"
+    else:
+        yield (
+            f"gap {short(inside.before)} → {short(inside.after)} with the corrections, {inside.percent:.1f} "
+            f"% less, in manoeuvres that no search has used ({numbers})"
+        )
+        yield (
+            f"gap {short(inside.after_air_and_instruments)} if this flight's air is taken into account, "
+            f"which does not count as a reduction"
+        )
+    if inside.on_paper:
+        names = ", ".join(spelled(name) for name in inside.on_paper)
+        yield f"not flown, because this simulator cannot take them: {names}"
+
+
+def _table(inside: InSimulator) -> Table:
+    table = Table(box=box.SIMPLE_HEAD, pad_edge=False, show_edge=False, padding=(0, 1, 0, 0))
+    for heading in ("", "limit", "before", "after", "", "Theil"):
+        table.add_column(heading, justify="right" if heading else "left", no_wrap=True)
+    for q in inside.qualification:
+        quantity = _QUANTITIES[q.channel]
+        factor = quantity.factor
+        after = "" if q.after is None else f"{factor * q.after:.2f}"
+        theil = f"{q.theil[0]:.3f}" + ("" if q.theil[1] is None else f" → {q.theil[1]:.3f}")
+        limit = "" if q.limit is None else f"±{factor * q.limit:.2g}"
+        table.add_row(
+            f"{quantity.symbol}, {quantity.unit}",
+            limit,
+            f"{factor * q.before:.2f}",
+            after,
+            _in_words(q),
+            theil,
+        )
+    return table
+
+
+def _in_words(q: Qualification) -> str:
+    if q.passes_before is None:
+        return ""
+    words = [
+        "pass" if passed else "FAIL" for passed in (q.passes_before, q.passes_after) if passed is not None
+    ]
+    return " → ".join(words)
+
 
 WIDEST = 120
 """Largest number of columns at which lines are easy to read."""

@@ -2,15 +2,146 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from math import inf, radians
+
+import numpy as np
 
 from advisor.aircraft.aircraft import Aircraft
+from advisor.aircraft.reference import SIDE_PARAMETERS
 from advisor.aircraft.script_identity import ScriptIdentity
-from advisor.decision.conditions import travel_of
+from advisor.decision.conditions import ALPHA_MARGIN, LINEAR_RAD, travel_of
+from advisor.decision.held_inputs import held_response
+from advisor.model.axes.lateral import Trim, state_matrix
+from advisor.model.short_period import ShortPeriod
+from advisor.process.arrays import FloatArray
 from advisor.scripts.flight_limits import FlightLimits
 from advisor.scripts.inputs import CONTROLS, NAMES, Control, ScriptInput, input_of
 from advisor.scripts.outputs import StatedOutput, stated_outputs
 from advisor.scripts.pace import Pace, pace_of
-from advisor.scripts.sizes import Size, size_of
+
+FIRST_SHARE: Mapping[str, float] = {"elevator": 0.08, "aileron": 0.08, "rudder": 0.10}
+"""Size of the first input as a fraction of the travel, if neither model nor flight is known. In ArduPlane's
+simulator this elevator pitches by 4 to 20 deg in a 3-2-1-1, and this aileron banks by 10 deg in a doublet."""
+MULTISINE_SHARE = 0.08
+"""Peak of a multisine as a fraction of the travel, if neither model nor flight is known."""
+LARGEST_SHARE = 0.25
+"""Largest size by a model, as a share of the travel. A model that no flight has confirmed may be wrong by a
+factor of two, and this size still leaves half of the travel."""
+_PITCH_RAD = radians(15.0)
+"""Largest pitch excursion of an input, rad: half of the pitch angle at which a script ends an input."""
+_BANK_SHARE = 0.5
+"""Largest predicted bank as a share of the limit of bank, at which a script ends an input."""
+_USUAL_AIRSPEED_M_S = 20.0
+"""Air speed for gravity's term in the sideslip equation if no air speed is stated, m/s."""
+_STEP_S = 0.02
+_PITCH_MODEL = ("Z_alpha", "M_alpha", "M_q", "M_delta_e")
+_SIDE_MODEL = ("L_p", "L_delta_a")
+
+
+@dataclass(frozen=True, slots=True)
+class Size:
+    """Largest deflection of one control within an input."""
+
+    rad: float
+    why: str
+    """Reason in words, for the script's head."""
+
+
+def size_of(
+    test: ScriptInput,
+    control: Control,
+    aircraft: Aircraft,
+    model: Mapping[str, float],
+    flown_rad: float | None = None,
+) -> Size:
+    """Return the size of a control's deflection within an input.
+
+    Parameters
+    ----------
+    model
+        Derivatives by name, rad and s; may be empty.
+    flown_rad
+        Largest deflection from trim in an accepted manoeuvre of this control, rad; None without one.
+    """
+    travel = travel_of(getattr(aircraft, control).ends_deg)
+    assumed = "" if getattr(aircraft, control).ends_deg else " (assumed)"
+    of = f"of {np.degrees(travel):.4g} deg travel{assumed}"
+    share = MULTISINE_SHARE if test.sines is not None else FIRST_SHARE[control]
+    first = Size(share * travel, f"{100 * share:.0f} % {of}, to begin gently")
+    if flown_rad is not None:
+        first = Size(flown_rad, "size of the accepted manoeuvres in the log")
+    most = Size(ALPHA_MARGIN * travel, f"{100 * ALPHA_MARGIN:.0f} % {of}")
+    limited = _limited(test, control, aircraft, model)
+    if limited is None:
+        return min(first, most, key=lambda size: size.rad)
+    largest = max(LARGEST_SHARE * travel, flown_rad or 0.0)
+    by_share = Size(largest, f"{100 * largest / travel:.0f} % {of}, the most by a model")
+    return min(limited, by_share, most, key=lambda size: size.rad)
+
+
+def _limited(
+    test: ScriptInput, control: Control, aircraft: Aircraft, model: Mapping[str, float]
+) -> Size | None:
+    """Return the size at which the model reaches the nearest limit; None without a model of this axis."""
+    needed = _PITCH_MODEL if control == "elevator" else (*_SIDE_MODEL, *_RUDDER.get(control, ()))
+    if not set(needed) <= set(model):
+        return None
+    command = unit_command(test, control)
+    bank = _BANK_SHARE * radians(aircraft.limits.bank_deg)
+    if control == "elevator":
+        alpha, pitch = _peaks(*_pitch(model), command)
+        stated = aircraft.limits.alpha_deg
+        most = LINEAR_RAD if stated is None else min(LINEAR_RAD, 0.5 * radians(stated))
+        limits = {"angle of attack": (most, alpha), "pitch": (_PITCH_RAD, pitch)}
+    else:
+        airspeed = aircraft.stated_airspeed_m_s or _USUAL_AIRSPEED_M_S
+        beta, rolled = _peaks(*_side(model, control, airspeed), command)
+        # Aileron and rudder bank the aircraft together.
+        several = len({"aileron", "rudder"} & set(test.moved))
+        limits = {"sideslip": (LINEAR_RAD, beta), "bank": (bank / several, rolled)}
+    sizes = [
+        Size(limit / peak if peak > 0.0 else inf, f"{name} of {np.degrees(limit):.3g} deg by the model")
+        for name, (limit, peak) in limits.items()
+    ]
+    return min(sizes, key=lambda size: size.rad)
+
+
+_RUDDER: Mapping[str, tuple[str, ...]] = {"rudder": ("N_beta", "N_delta_r")}
+"""Further derivatives that the rudder's response needs."""
+
+
+def unit_command(test: ScriptInput, control: Control) -> FloatArray:
+    """Return the command of an input of size 1 and the rest after it, at intervals of 20 ms, shape (n,)."""
+    t = np.arange(0.0, test.length_s + test.rest_s, _STEP_S)
+    if test.sines is not None:
+        return np.where(t < test.length_s, test.sines[control].values(t / test.length_s), 0.0)
+    ends = test.unit_s * np.cumsum([units for units, _ in test.steps])
+    shares = np.array([*(share for _, share in test.steps), 0.0])
+    return np.asarray(shares[np.searchsorted(ends, t + 1e-9, side="right")])
+
+
+def _pitch(model: Mapping[str, float]) -> tuple[FloatArray, FloatArray, tuple[int, int]]:
+    """Return A and B of α, q, θ, and the rows of angle of attack and pitch."""
+    short = ShortPeriod.from_mapping(model)
+    a = np.zeros((3, 3))
+    a[:2, :2], a[2, 1] = short.a, 1.0
+    return a, np.array([*short.b, 0.0]), (0, 2)
+
+
+def _side(
+    model: Mapping[str, float], control: Control, airspeed_m_s: float
+) -> tuple[FloatArray, FloatArray, tuple[int, int]]:
+    """Return A and B of β, p, r, φ, and the rows of sideslip and bank."""
+    theta = np.array([model.get(name, 0.0) for name in SIDE_PARAMETERS])
+    ending = "delta_a" if control == "aileron" else "delta_r"
+    b = np.array([model.get(f"{letter}_{ending}", 0.0) for letter in ("Y", "L", "N")] + [0.0])
+    return state_matrix(theta, Trim(airspeed_m_s)), b, (0, 3)
+
+
+def _peaks(a: FloatArray, b: FloatArray, rows: tuple[int, int], command: FloatArray) -> tuple[float, float]:
+    """Return the largest absolute values of two states while the command is held over each step."""
+    peaks = np.max(np.abs(held_response(a, b, command, _STEP_S)), axis=0)
+    return float(peaks[rows[0]]), float(peaks[rows[1]])
 
 
 @dataclass(frozen=True, slots=True)

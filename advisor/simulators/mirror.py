@@ -4,6 +4,10 @@ A fit to the flight cannot remove such an effect from a simulator, because its s
 Aircraft and simulator therefore exchange their roles. A quick fit to the simulator's own replays finds their
 likeliest effect. If the flight is likelier next to the simulator without that effect, the replays are
 diagnosed in full. The simulator without its effects is then one more explanation of the flight.
+
+A pitch rate filter is found from the simulator's own attitude, because a replay has no noise. The relation
+θ̇ = q·cos φ − r·sin φ holds within the simulation's step. A pitch rate that differs from the attitude's rate
+is late. The difference is τ·q̇ for a first-order filter, and nearly so for a delay.
 """
 
 from collections.abc import Mapping, Sequence

@@ -1,5 +1,6 @@
 """The terminal application: one campaign, two screens."""
 
+import gc
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import replace
 from functools import partial
@@ -10,9 +11,11 @@ from typing import Any, ClassVar
 
 from textual.app import SystemCommand
 from textual.binding import BindingType
+from textual.css.stylesheet import Stylesheet
 from textual.events import Event, Key
 from textual.message import Message
 from textual.screen import Screen
+from textual.theme import Theme
 from textual.worker import Worker, WorkerState
 
 from advisor.aircraft.aircraft import Aircraft
@@ -22,17 +25,91 @@ from advisor.session.view import View, view_before_first, view_sideways
 from advisor.tui import keys
 from advisor.tui.actions import LINK_ACTIONS, REPLAY_ACTIONS, HandActions, LinkActions, ReplayActions
 from advisor.tui.explaining import Explain, commands, explanation
-from advisor.tui.garbage_collection import Garbage
 from advisor.tui.panes.flight import WholeFlightPane
 from advisor.tui.panes.replay_bar import ReplayBar
 from advisor.tui.screens.engineer import EngineerScreen
 from advisor.tui.screens.face import Face
 from advisor.tui.screens.pilot import PilotScreen
 from advisor.tui.settings import Settings
-from advisor.tui.sheets import Sheets
 from advisor.tui.sound import Sound, Voice
 from advisor.tui.themes import NAMES, THEMES
 from advisor.words.problems import UnusableInputError
+
+
+class Sheet(Stylesheet):
+    """Style sheet that parses each rule once while its variables are unchanged."""
+
+    def __init__(self, variables: dict[str, str]) -> None:
+        super().__init__(variables=variables)
+        self._parsed_with = variables
+
+    def set_variables(self, variables: dict[str, str]) -> None:
+        """Set the variables of the style sheet. Only changed variables need new rules."""
+        if variables != self._parsed_with:
+            self._parsed_with = variables
+            super().set_variables(variables)
+
+    def reparse(self) -> None:
+        """Parse the new parts of the style sheet."""
+        self.parse()
+
+
+class Sheets:
+    """The style sheets of all themes."""
+
+    def __init__(self, themes: Sequence[Theme]) -> None:
+        self._sheets = {
+            theme.name: Sheet({**theme.to_color_system().generate(), **theme.variables}) for theme in themes
+        }
+
+    def of(self, theme: str, now: Stylesheet) -> Sheet:
+        """Return the sheet of a theme with all sources that the present sheet has read, in equal order."""
+        sheet = self._sheets[theme]
+        for place, source in now.source.items():
+            sheet.add_source(source.content, place, source.is_defaults, source.tie_breaker, source.scope)
+        return sheet
+
+    def prepare(self, now: Stylesheet) -> bool:
+        """Parse one incomplete sheet; return False if all sheets are complete."""
+        lacking = (name for name, sheet in self._sheets.items() if sheet.source.keys() != now.source.keys())
+        theme = next(lacking, None)
+        if theme is not None:
+            self.of(theme, now).parse()
+        return theme is not None
+
+
+_LOT = 5_000
+"""Number of new objects after which garbage is collected; a collection takes one millisecond. Painting a
+large screen makes five times as many objects.
+"""
+_LOTS = 5
+"""Number of collections of new objects after which all objects are examined."""
+
+
+class Garbage:
+    """Runs garbage collections at times without a pending key, instead of Python's own.
+
+    Python's own run while a key is being answered, and an examination of all objects takes 10 to 50 ms.
+    """
+
+    def begin(self) -> None:
+        """Stop Python's own garbage collection. Objects that exist already are never examined."""
+        gc.freeze()
+        gc.disable()
+
+    def end(self) -> None:
+        """Start Python's own garbage collection again."""
+        gc.enable()
+        gc.unfreeze()
+
+    def collect_if_due(self) -> None:
+        """Collect garbage once enough new objects exist."""
+        new, lots, _ = gc.get_count()
+        if lots >= _LOTS:
+            gc.collect()
+        elif new >= _LOT:
+            gc.collect(0)
+
 
 _TWICE_WITHIN_S = 3.0
 _AT_ONCE_S = 0.001

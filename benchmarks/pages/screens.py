@@ -21,7 +21,7 @@ from advisor.session.replay import LogPlayer
 from advisor.session.source import Tempo
 from advisor.tui.app import AdvisorApp
 from advisor.tui.settings import Face, Settings
-from advisor.tui.svg import drawn
+from advisor.tui.taking import drawn
 
 SIZES: dict[Face, tuple[int, int]] = {"pilot": (100, 30), "engineer": (180, 50)}
 

@@ -4,8 +4,8 @@ import json
 
 import pytest
 
-from advisor.assistant.fitting import part_of, written
 from advisor.assistant.folders import RefusedError
+from advisor.assistant.server import part_of, written
 
 LARGE = {
     "verdict": "effect",

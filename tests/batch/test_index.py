@@ -7,8 +7,7 @@ import pytest
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.batch.flight import Analyzed, BatchTask, failed
-from advisor.batch.index import index_page
-from advisor.batch.picture import Point, trend_svg
+from advisor.batch.index import Point, index_page, trend_svg
 from advisor.batch.tables import changes_of, not_told_apart
 from advisor.words.problems import Problem
 from tests.batch.test_trend import flight as estimate_of

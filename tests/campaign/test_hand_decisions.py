@@ -17,8 +17,8 @@ from advisor.campaign.hand_decisions import NOTHING, ByHand, Remark
 from advisor.campaign.state import JudgedManeuver
 from advisor.flight.maneuvers.maneuver import Span
 from advisor.flight.maneuvers.marks import Mark
+from advisor.mavlink.logs.formats.telemetry import read_tlog
 from advisor.mavlink.logs.logs import open_log
-from advisor.mavlink.logs.tlog import read_tlog
 from sim.flight import Flight
 from sim.record import record
 from sim.scenario import Noise, Scenario

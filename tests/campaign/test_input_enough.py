@@ -3,8 +3,7 @@
 import pytest
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.campaign.arriving_information import ArrivingInformation
-from advisor.campaign.being_flown import InputEnough
+from advisor.campaign.being_flown import ArrivingInformation, InputEnough
 from advisor.campaign.campaign import Campaign, CampaignEvent
 from advisor.decision.arriving import Arriving
 from tests.flight.columns import Wire, fly, text

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from advisor.flight.signals.messages import Columns
-from advisor.mavlink.logs.tlog import read_tlog
+from advisor.mavlink.logs.formats.telemetry import read_tlog
 from tests.conftest import Advisor
 from tests.flights import TWO, recorded
 

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from advisor.mavlink.logs.tlog import read_tlog
+from advisor.mavlink.logs.formats.telemetry import read_tlog
 from advisor.process.interrupt import in_order
 from tests.cli.processes import flight, start
 from tests.mavlink.link.builders import free_port, wait_until

@@ -6,7 +6,7 @@ import pytest
 
 from advisor.flight.maneuvers.events import Notice
 from advisor.flight.stream.identity import READER
-from advisor.mavlink.logs.tlog import read_tlog
+from advisor.mavlink.logs.formats.telemetry import read_tlog
 from advisor.process.yaml_file import read_yaml
 from advisor.words.printable import printable
 from advisor.words.problems import ConfigurationError, Problem

@@ -1,4 +1,4 @@
-from advisor.doctor.scripting import script_notes
+from advisor.doctor.examiner import script_notes
 from advisor.flight.vehicle.surfaces import Part, Scale, Surface
 
 ELEVATOR = Surface((Part(2, Scale()),), False, "")

@@ -7,7 +7,7 @@ import numpy as np
 
 from advisor.aircraft.standard_gravity import GRAVITY_M_S2
 from advisor.flight.signals.messages import Columns
-from advisor.mavlink.logs.tlog import read_tlog
+from advisor.mavlink.logs.formats.telemetry import read_tlog
 from tests.mavlink.autopilot_logs import dataflash_head, dataflash_record
 
 DEFAULT = {"IMU": 50.0, "ATT": 25.0, "RCOU": 25.0, "CTUN": 25.0, "XKF1": 25.0, "ARSP": 10.0, "AOA": 10.0}

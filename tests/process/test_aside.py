@@ -6,8 +6,8 @@ from time import monotonic
 import pytest
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.campaign.arriving_information import ArrivingInformation
 from advisor.campaign.axes.elevator_campaign import ElevatorCampaign
+from advisor.campaign.being_flown import ArrivingInformation
 from advisor.campaign.campaign import Campaign, ManeuverJudged
 from advisor.decision.arriving import Arriving
 from advisor.mavlink.logs.logs import open_log

@@ -16,7 +16,7 @@ from textual.widgets import DataTable
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft.reference import PARAMETERS
-from advisor.assistant.fitting import written
+from advisor.assistant.server import written
 from advisor.campaign.campaign import ManeuverJudged
 from advisor.cli.live import _announce
 from advisor.gap.alternative import Alternative, AlternativeEvidence

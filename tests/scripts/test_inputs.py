@@ -10,8 +10,7 @@ from advisor.flight.vehicle.mixers import A_TAIL, ELEVONS, FLAPERONS, SPOILERS, 
 from advisor.scripts.inputs import CONTROLS, NAMES, STEPPED, input_of
 from advisor.scripts.outputs import factors_by_function, forward
 from advisor.scripts.pace import pace_of
-from advisor.scripts.sizes import size_of, unit_command
-from advisor.scripts.table import Source, script_table
+from advisor.scripts.table import Source, script_table, size_of, unit_command
 
 MODEL = {
     "Z_alpha": -5.0, "M_alpha": -40.0, "M_q": -4.0, "M_delta_e": -60.0, "Y_beta": -0.4, "L_beta": -20.0,

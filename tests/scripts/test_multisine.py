@@ -3,7 +3,7 @@ from itertools import combinations
 import numpy as np
 import pytest
 
-from advisor.scripts.multisine import disjoint_harmonics, multisine
+from advisor.scripts.inputs import disjoint_harmonics, multisine
 
 BANDS = [(5, 43), (4, 30), (2, 22), (3, 60)]
 RANDOM_PHASES = 1.45

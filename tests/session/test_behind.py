@@ -17,8 +17,8 @@ from advisor.campaign.hand_decisions import ByHand
 from advisor.cli import narrator
 from advisor.mavlink.link.health import LinkStatistics
 from advisor.mavlink.link.keeping import Keeping, new_door
+from advisor.mavlink.link.link import MotionNow
 from advisor.mavlink.link.link_process import LinkProcess
-from advisor.mavlink.link.motion_now import MotionNow
 from advisor.mavlink.link.observer import LinkObserver
 from advisor.mavlink.wire.framing import CRC_EXTRA, FrameCutter
 from advisor.session.behind import BehindTeller
@@ -28,8 +28,8 @@ from advisor.session.remote import ConductorTask, RemoteConductor
 from advisor.session.source import LinkHealth
 from advisor.session.view import report_before_first
 from advisor.tui.advice import advise
-from advisor.tui.panes.limits_now import limits_now
 from advisor.tui.panes.pilot import flying_in_words
+from advisor.tui.screens.pilot import limits_now
 from tests.mavlink.link.builders import Sender, UdpVehicle, free_port, heartbeat
 from tests.tui import elsewhere, flights
 from tests.tui.stage import stage

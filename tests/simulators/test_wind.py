@@ -14,7 +14,7 @@ from advisor.flight.signals.messages import Columns
 from advisor.flight.signals.motion import along_heading
 from advisor.flight.signals.record import Channel
 from advisor.gap.records.prepare import prepare
-from advisor.mavlink.ardupilot.ardupilot_log import read_dataflash
+from advisor.mavlink.logs.formats.dataflash import read_dataflash
 from advisor.simulators.air import still_air_said, winds
 from advisor.simulators.as_given import Flying
 from advisor.simulators.isolated import Isolated

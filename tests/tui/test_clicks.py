@@ -3,8 +3,8 @@
 import pytest
 
 from advisor.session.replay import LogPlayer
-from advisor.tui.panes.pane_tabs import PaneTabs
 from advisor.tui.panes.replay_bar import ReplayBar
+from advisor.tui.screens.engineer import PaneTabs
 from advisor.tui.settings import Settings
 from tests.tui import flights
 from tests.tui.stage import stage

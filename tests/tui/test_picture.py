@@ -4,7 +4,7 @@ import re
 
 import pytest
 
-from advisor.tui.svg import drawn
+from advisor.tui.taking import drawn
 from tests.tui import flights
 from tests.tui.stage import stage
 

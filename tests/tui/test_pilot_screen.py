@@ -14,8 +14,8 @@ from advisor.session.view import View
 from advisor.tui.advice import advise
 from advisor.tui.panes.criterion import share_of_limit
 from advisor.tui.panes.last_verdict import for_the_pilot
-from advisor.tui.panes.limits_now import limits_now
 from advisor.tui.panes.pilot import BigWord, flying_in_words, how_far
+from advisor.tui.screens.pilot import limits_now
 from advisor.tui.stick_drawing import stick_drawing, stick_line
 from advisor.words.problems import Problem
 from tests.campaign.side_builders import judged

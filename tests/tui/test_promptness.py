@@ -11,10 +11,9 @@ from textual.widget import Widget
 from advisor.session.conducting import SessionReport
 from advisor.session.view import View
 from advisor.tui import app as application
-from advisor.tui.garbage_collection import Garbage
+from advisor.tui.app import Garbage, Sheets
 from advisor.tui.plot.widget import Plot
 from advisor.tui.settings import Settings
-from advisor.tui.sheets import Sheets
 from advisor.tui.themes import NAMES, THEMES
 from benchmarks.keys import says
 from benchmarks.terminal import terminal

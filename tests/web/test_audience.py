@@ -14,10 +14,9 @@ from advisor.session.conductor import Conductor
 from advisor.session.source import LinkRequest
 from advisor.tui.explaining import keys_at_hand
 from advisor.tui.settings import Settings
-from advisor.web import attached
-from advisor.web.attached import AttachedConductor, ServerGoneError
+from advisor.web import viewer
 from advisor.web.showing import Audience, Showing
-from advisor.web.viewer import ViewerApp, WatchingApp
+from advisor.web.viewer import AttachedConductor, ServerGoneError, ViewerApp, WatchingApp
 from advisor.web.viewing import Viewing
 from tests.mavlink.link.builders import wait_until
 from tests.tui import flights
@@ -104,7 +103,7 @@ async def test_a_page_offers_the_keys_that_it_may_use_and_is_left_at_once(watch_
 
 
 def test_a_page_says_that_its_server_does_not_answer(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(attached, "OLD_AFTER_S", 0.3)
+    monkeypatch.setattr(viewer, "OLD_AFTER_S", 0.3)
     ours, theirs = Pipe()
     with ours, theirs, watching(AttachedConductor(ours)) as seen:
         theirs.send(SessionReport(flights.state(3), HandFedSource().condition, None, ()))

@@ -6,8 +6,8 @@ from aiohttp import ClientSession, web
 from textual_serve.download_manager import DownloadManager
 
 from advisor.mavlink.link.keeping import Door
-from advisor.web.page_process import PageProcess
 from advisor.web.server import listening
+from advisor.web.site import PageProcess
 
 
 class Slow(DownloadManager):

@@ -1,24 +1,146 @@
-"""Influences that the model of each axis omits (see ``decision.omitted``).
+"""Influences that the model of each axis omits, and the bias of the derivatives due to each.
 
 The equations of a rigid body contain (Izz − Ixx)/Iyy·p·r in pitch, (Iyy − Izz)/Ixx·q·r in roll and
 (Ixx − Iyy)/Izz·p·q in yaw. Every body has Izz ≤ Ixx + Iyy, and an aircraft has Ixx and Iyy of at most Izz.
 All three factors therefore have a size of at most one (Etkin & Reid, Dynamics of Flight, 1996, ch. 4). The
 moments of throttle and of other controls are estimated from the residual. So are the changes of L_r, N_p and
 L_β with the angle of attack, and a moment that does not grow with V².
+
+S holds the sensitivities of the fitted outputs with respect to the parameters. s is the response to the
+omitted term with the coefficient one. W is the inverse of the noise's covariance. Near the optimum the
+parameters take up
+
+    Δθ = (SᵀWS)⁻¹·SᵀW·s
+
+for each unit of the coefficient (omitted-variable bias; Greene, Econometric Analysis, 2012, ch. 4). An
+unknown coefficient is estimated from the residual, by least squares with s as an additional column. The
+residual's lag-1 correlation is removed first.
 """
 
-from collections.abc import Collection, Iterator
+from collections.abc import Collection, Iterator, Sequence
+from dataclasses import dataclass
+from math import sqrt
 
 import numpy as np
+from scipy.special import chdtri
 
 from advisor.decision.axes.linear_motion import PITCH, SIDE, LinearMotion
-from advisor.decision.omitted import Influence, objections_to
+from advisor.decision.consistency import OUTLIER_BELOW
 from advisor.decision.verdict import Reason
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.oem.axis.estimate import AxisEstimate
-from advisor.oem.estimate import Estimate
+from advisor.oem.estimate import ChannelFit, Estimate
 from advisor.oem.instruments import COUPLING
 from advisor.process.arrays import FloatArray
+from advisor.words.digits import distinct_texts
+from advisor.words.quantiles import NORMAL_95
+from advisor.words.quantities import symbol
+
+
+@dataclass(frozen=True, slots=True)
+class Influence:
+    """Influence that a model omits, with the remedy."""
+
+    code: str
+    what: str
+    cure: str
+    state: str
+    """State whose derivative by time has the omitted term."""
+    term: FloatArray
+    """Shape (n,): omitted term for a coefficient of one, 1/s²."""
+    at_most_one: bool = False
+    """Whether the coefficient has a size of at most one. Otherwise the residual gives the coefficient."""
+
+
+@dataclass(frozen=True, slots=True)
+class Bias:
+    """Bias of the parameters of an estimate due to one omitted term."""
+
+    of_one: FloatArray
+    """Shape (k,): change of the parameters for a coefficient of one."""
+    coefficient: float
+    """Coefficient of the omitted term, estimated from the residual."""
+    ratio: float
+    """Coefficient of the omitted term over its standard deviation."""
+
+
+def objections_to(
+    influences: Collection[Influence], linear: LinearMotion, estimate: Estimate, judged: Sequence[str]
+) -> Iterator[Reason]:
+    """Yield a reason for each influence that biases a judged derivative beyond its 95 % interval."""
+    # The statistic is the likelihood ratio of the two models, one with the term.
+    least = sqrt(float(chdtri(1, OUTLIER_BELOW)))
+    for influence in influences:
+        bias = bias_by(influence.term, influence.state, linear, estimate)
+        if bias is not None and (influence.at_most_one or abs(bias.ratio) >= least):
+            moved = bias.of_one * (1.0 if influence.at_most_one else bias.coefficient)
+            yield from _beyond(estimate, moved, influence, judged)
+
+
+def bias_by(term: FloatArray, state: str, linear: LinearMotion, estimate: Estimate) -> Bias | None:
+    """Return the bias due to an omitted term.
+
+    Return None for a constant term, for too short a fit, and for a model whose response overflows. A fit
+    needs two samples for each parameter.
+
+    Parameters
+    ----------
+    term
+        Shape (n,): omitted part of a state's derivative by time for a coefficient of one, 1/s².
+    """
+    if len(term) < 2 or not np.ptp(term) > 0.0:
+        return None
+    columns = linear.columns(term, state)
+    if len(term) < 2 * (columns[state].shape[1] - 1):
+        return None
+    outputs = [(fit, columns[name]) for name, fit in estimate.fits[0].items() if name in columns]
+    if not all(np.all(np.isfinite(column)) for _, column in outputs):
+        return None  # The response of a fast unstable model overflows, and tells no bias.
+    taken, _, _ = _regressed([_rows(fit, linear.t, column, 0.0) for fit, column in outputs])
+    # Coloured residuals make a term look significant that only follows their colour.
+    _, coefficient, ratio = _regressed([_rows(fit, linear.t, column, fit.lag1) for fit, column in outputs])
+    return Bias(taken[: len(estimate.theta)], coefficient, ratio)
+
+
+def _regressed(outputs: list[tuple[FloatArray, FloatArray]]) -> tuple[FloatArray, float, float]:
+    """Return the share of the last column that the known columns explain, the column's coefficient, and this
+    coefficient over its std.
+    """
+    rows = np.vstack([rows for rows, _ in outputs])
+    residual = np.concatenate([left for _, left in outputs])
+    size = np.maximum(np.linalg.norm(rows, axis=0), 1e-300)
+    others, omitted = rows[:, :-1] / size[:-1], rows[:, -1] / size[-1]
+    taken = np.linalg.lstsq(others, omitted, rcond=None)[0]
+    rest = omitted - others @ taken
+    power = max(float(rest @ rest), 1e-300)
+    coefficient = float(rest @ residual) / power
+    ratio = coefficient * float(np.sqrt(power)) / max(float(np.std(residual)), 1e-300)
+    return taken / size[:-1] * size[-1], coefficient / float(size[-1]), ratio
+
+
+def _rows(fit: ChannelFit, t: FloatArray, columns: FloatArray, lag1: float) -> tuple[FloatArray, FloatArray]:
+    """Return an output's sensitivities and residual over its std, without the correlation ``lag1``."""
+    at_fit = np.stack([np.interp(fit.t, t, column) for column in columns.T], axis=1)
+    keep = min(max(lag1, 0.0), 0.99)
+    rows, left = (both[1:] - keep * both[:-1] for both in (at_fit, fit.residual))
+    spread = max(float(np.std(left)), 1e-3 * fit.noise, 1e-300)
+    return rows / spread, left / spread
+
+
+def _beyond(estimate: Estimate, bias: FloatArray, omitted: Influence, judged: Sequence[str]) -> list[Reason]:
+    """Return a reason with the derivative whose bias exceeds its interval most; empty without one."""
+    half = NORMAL_95 * estimate.std
+    places = {name: estimate.names.index(name) for name in judged if name not in estimate.not_identifiable}
+    share = {name: abs(float(bias[k]) / float(half[k])) for name, k in places.items() if half[k] > 0.0}
+    name = max(share, key=lambda name: share[name], default="")
+    if not name or share[name] <= 1.0:
+        return []
+    shown, most = distinct_texts(share[name], 1.0, 1)
+    text = (
+        f"{omitted.what} may move {symbol(name)} by {shown} times its interval (limit {most}); {omitted.cure}"
+    )
+    return [Reason(omitted.code, text, share[name], 1.0)]
+
 
 PITCH_JUDGED = ("M_alpha", "M_q", "M_delta_e", "Z_alpha")
 """Derivatives of pitch whose bias is examined."""

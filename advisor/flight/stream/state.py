@@ -1,6 +1,6 @@
 """State of a stream: the vehicle's outputs, channels, problems and contradicted instruments."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -10,6 +10,10 @@ from advisor.aircraft.script_identity import ScriptIdentity
 from advisor.flight.elevator.elevator_guess import ElevatorGuesses, Guess
 from advisor.flight.elevator.elevator_sign import SAID
 from advisor.flight.elevator.mixing import Mixing
+from advisor.flight.instruments.axes.side_instruments import examine_side
+from advisor.flight.instruments.examination import examine
+from advisor.flight.instruments.examined import ExaminedRecords
+from advisor.flight.maneuvers.events import VehicleSaid
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.flight.maneuvers.markers import MarkerWatch
 from advisor.flight.maneuvers.marks import Mark, Marks
@@ -17,26 +21,130 @@ from advisor.flight.signals.attitude import Attitudes
 from advisor.flight.signals.banks import Banks
 from advisor.flight.signals.clocks import BootClock
 from advisor.flight.signals.instrument_finding import InstrumentFinding
+from advisor.flight.signals.messages import Columns
 from advisor.flight.signals.power_on import PowerOn
+from advisor.flight.signals.record import UNITS, Channel
 from advisor.flight.signals.track import ChannelStatus
 from advisor.flight.signals.tracks import Tracks
 from advisor.flight.signals.trust import Distrust, frozen
+from advisor.flight.signals.whole_texts import LONGEST, WholeTexts
 from advisor.flight.stream.axes.side_path import LOOPS, SidePath
 from advisor.flight.stream.cutting import Cutting
 from advisor.flight.stream.decoding import AskedSources
 from advisor.flight.stream.elevator_path import ElevatorPath
-from advisor.flight.stream.identity import Identity
-from advisor.flight.stream.instrument_watch import InstrumentWatch
+from advisor.flight.stream.identity import READER, Identity
 from advisor.flight.stream.maneuver_records import ManeuverRecords
 from advisor.flight.stream.service import Service
 from advisor.flight.stream.suitability import problems, with_guess
-from advisor.flight.stream.vehicle_texts import VehicleTexts
-from advisor.flight.vehicle.breaks import Breaks
-from advisor.flight.vehicle.following import SenderWatch
+from advisor.flight.vehicle.breaks import DOWN, Breaks
+from advisor.flight.vehicle.following import FOLLOW, TAKE, SenderWatch
 from advisor.flight.vehicle.pieces import Master
 from advisor.flight.vehicle.surfaces import Surface
 from advisor.flight.vehicle.vehicle import Vehicle
+from advisor.words.printable import printable
 from advisor.words.problems import Problem
+
+_EVERY_S = 10.0
+"""Length of an examined stretch, s: one to two periods of a slow short period."""
+_LATE_S = 1.0
+"""Length of the newest flight that an examination leaves out, s, because packets may still arrive."""
+_ENOUGH = 6
+"""Number of stretches with motion after which the watch ends. Errors are then well below the scatter between
+instruments."""
+
+
+class InstrumentWatch:
+    """Examination of the instruments, one stretch of the flight after another.
+
+    The stretches end at fixed vehicle times, so that the batches of a log change no result.
+
+    Parameters
+    ----------
+    cut
+        Function that returns a stretch of a channel by name, start and end, s.
+    """
+
+    def __init__(self, cut: Callable[[str, float, float], Channel | None]) -> None:
+        self._cut = cut
+        self.begin()
+
+    def begin(self) -> None:
+        """Begin another power-on, or follow another vehicle."""
+        self.pitch, self.sideways = ExaminedRecords(examine), ExaminedRecords(examine_side)
+        """All stretches so far. No finding is marked as used, because these records give no estimate."""
+        self._at_s = -np.inf
+        self._moving = 0
+
+    def advance(self, first_s: float, now_s: float) -> None:
+        """Make every due examination; vehicle times of the first and the newest message, s."""
+        while self._moving < _ENOUGH and now_s - _LATE_S >= max(self._at_s, first_s) + _EVERY_S:
+            rate = self._cut("q", max(self._at_s, first_s), now_s - _LATE_S)
+            if rate is None:
+                return
+            end_s = _EVERY_S * (np.floor(rate.t[0] / _EVERY_S) + 1.0)
+            if end_s > now_s - _LATE_S:
+                return
+            self._examine(end_s - _EVERY_S, end_s)
+            self._at_s = end_s
+
+    def finish(self, first_s: float, now_s: float) -> None:
+        """Examine the last stretch at the end of the stream."""
+        self.advance(first_s, now_s)
+        if np.isfinite(first_s) and self._moving < _ENOUGH:
+            self._examine(max(self._at_s, first_s), now_s)
+
+    def _examine(self, start_s: float, end_s: float) -> None:
+        cuts = {name: self._cut(name, start_s, end_s) for name in UNITS}
+        channels = {name: c for name, c in cuts.items() if c is not None}
+        for stretches in (self.pitch, self.sideways):
+            examined = stretches.examined(channels)
+            self._moving += "theta_scale" in examined.evidence
+            if examined.evidence:
+                stretches.count(examined.evidence, examined.findings)
+
+
+SEVERITIES = ("emergency", "alert", "critical", "error", "warning", "notice", "info", "debug")
+"""Names of MAV_SEVERITY 0 to 7 (MAVLink common.xml)."""
+
+_OWN = (READER, FOLLOW, TAKE, DOWN)
+"""Beginnings of the texts that the advisor writes into its own stream."""
+
+
+class VehicleTexts:
+    """Whole texts of every sender, as events."""
+
+    def __init__(self) -> None:
+        self._texts = WholeTexts()
+
+    def heard(self, columns: Columns, at_s: float) -> Iterator[VehicleSaid]:
+        """Yield the texts that these messages complete.
+
+        Parameters
+        ----------
+        columns
+            STATUSTEXT of one sender, in order of arrival.
+        at_s
+            Vehicle time of the newest sample, s since boot; NaN before the first.
+        """
+        sender = (columns.system, columns.component)
+        for whole in self._texts.heard(columns, np.full(len(columns.order), at_s)):
+            yield from _said(sender, whole.severity, whole.text, at_s)
+
+    def finish(self, at_s: float) -> Iterator[VehicleSaid]:
+        """Yield the texts whose last chunk did not arrive."""
+        for sender, whole in self._texts.finish():
+            yield from _said(sender, whole.severity, whole.text, at_s)
+
+
+def _said(sender: tuple[int, int], severity: int, raw: bytes, at_s: float) -> Iterator[VehicleSaid]:
+    text = printable(raw.decode("utf-8", "replace")).strip()
+    if not text or raw.startswith(_OWN):
+        return
+    if len(text) > LONGEST:
+        text = f"{text[: LONGEST - 1]}…"
+    name = SEVERITIES[severity] if severity < len(SEVERITIES) else ""
+    yield VehicleSaid(text, name, *sender, at_s)
+
 
 KEEP_S = 120.0
 """Time for which channels are kept, s: longer than any manoeuvre with its lead-in."""

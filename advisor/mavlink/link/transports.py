@@ -4,10 +4,162 @@ import contextlib
 import errno
 import os
 import select
+import socket
 
 from advisor.mavlink.link.connection import Address
-from advisor.mavlink.link.sockets import StreamTransport, UdpTransport
 from advisor.mavlink.link.transport import CHUNK_BYTES, ConnectionCutError, Peer, Transport
+
+RECEIVE_BUFFER_BYTES = 4 * 1024 * 1024  # at the usual 208 kB a busy machine loses packets
+_MOST_CHUNKS = 512  # taken in one go, so that a flood cannot keep the reader from handing over
+
+
+class UdpTransport(Transport):
+    """UDP transport, listening (``udpin``) or connecting (``udpout``).
+
+    Parameters
+    ----------
+    inherited
+        File descriptor of another process's socket. None to open a new socket.
+    """
+
+    def __init__(self, address: Address, inherited: int | None = None) -> None:
+        self._remote: Peer | None = None
+        if address.kind == "udpout":
+            self._remote = (socket.gethostbyname(address.host), address.port)
+        if inherited is None:
+            self._open(address)
+        else:
+            self._socket = socket.socket(fileno=inherited)
+        self._socket.setblocking(False)
+
+    def _open(self, address: Address) -> None:
+        self._socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+        self._socket.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, RECEIVE_BUFFER_BYTES)
+        try:
+            if address.kind == "udpin":
+                self._socket.bind((address.host, address.port))
+        except OSError:
+            self._socket.close()
+            raise
+
+    def wait(self, timeout_s: float) -> bool:
+        """Return whether bytes are available."""
+        return bool(select.select([self._socket], [], [], timeout_s)[0])
+
+    def receive(self) -> list[tuple[Peer, bytes]]:
+        """Return all bytes that have arrived."""
+        pieces: list[tuple[Peer, bytes]] = []
+        for _ in range(_MOST_CHUNKS):
+            try:
+                data, peer = self._socket.recvfrom(CHUNK_BYTES)
+            except BlockingIOError:
+                break
+            except ConnectionError:  # an earlier packet of ours found nobody: silence, not an end
+                continue
+            pieces.append((peer, data))
+        return pieces
+
+    def send(self, data: bytes, to: Peer | None) -> bool:
+        """Send bytes; return False without a receiver."""
+        target = self._remote or to
+        if target is None:
+            return False
+        with contextlib.suppress(OSError):  # an unreachable peer is heard again or it is silent
+            self._socket.sendto(data, target)
+        return True
+
+    def close(self) -> None:
+        """Close the socket."""
+        self._socket.close()
+
+    @property
+    def port(self) -> int | None:
+        """Local network port."""
+        return int(self._socket.getsockname()[1])
+
+    @property
+    def descriptor(self) -> int | None:
+        """File descriptor of the socket."""
+        return self._socket.fileno()
+
+
+class StreamTransport(Transport):
+    """TCP transport, connecting (``tcp``) or accepting one caller after another (``tcpin``); or a local
+    socket."""
+
+    def __init__(self, address: Address, timeout_s: float = 2.0) -> None:
+        self._listener: socket.socket | None = None
+        self._stream: socket.socket | None = None
+        if address.kind == "tcpin":
+            self._listener = socket.create_server((address.host, address.port), reuse_port=False)
+            self._listener.setblocking(False)
+        elif address.kind == "unix":
+            stream = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
+            try:
+                stream.connect(address.host)
+            except OSError:
+                stream.close()
+                raise
+            self._adopt(stream)
+        else:
+            self._adopt(socket.create_connection((address.host, address.port), timeout=timeout_s))
+
+    def _adopt(self, stream: socket.socket) -> None:
+        stream.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, RECEIVE_BUFFER_BYTES)
+        if stream.family != socket.AF_UNIX:
+            stream.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+        stream.setblocking(False)
+        self._stream = stream
+
+    def wait(self, timeout_s: float) -> bool:
+        """Return whether bytes are available."""
+        ends = [end for end in (self._stream or self._listener,) if end is not None]
+        ready = select.select(ends, [], [], timeout_s)[0]
+        if ready and self._stream is None and self._listener is not None:
+            with contextlib.suppress(OSError):  # a caller that hung up again at once
+                self._adopt(self._listener.accept()[0])
+            return False
+        return bool(ready)
+
+    def receive(self) -> list[tuple[Peer, bytes]]:
+        """Return everything that has arrived."""
+        if self._stream is None:
+            return []
+        try:
+            data = self._stream.recv(CHUNK_BYTES)
+        except BlockingIOError:
+            return []
+        except OSError as error:
+            raise self._cut(error.strerror or str(error)) from None
+        if not data:
+            raise self._cut("closed by the other side")
+        return [((), data)]
+
+    def _cut(self, why: str) -> ConnectionCutError:
+        if self._stream is not None:
+            self._stream.close()
+            self._stream = None
+        return ConnectionCutError(why, listening=self._listener is not None)
+
+    def send(self, data: bytes, to: Peer | None) -> bool:
+        """Send bytes; return False without a receiver."""
+        if self._stream is None:
+            return False
+        with contextlib.suppress(OSError):  # the next read tells that the line is cut
+            self._stream.sendall(data)
+        return True
+
+    def close(self) -> None:
+        """Close the socket."""
+        for end in (self._stream, self._listener):
+            if end is not None:
+                end.close()
+
+    @property
+    def port(self) -> int | None:
+        """Local network port."""
+        end = self._listener or self._stream
+        return None if end is None or end.family == socket.AF_UNIX else int(end.getsockname()[1])
 
 
 class SerialTransport(Transport):

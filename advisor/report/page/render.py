@@ -8,21 +8,19 @@ from jinja2 import Environment, FunctionLoader, StrictUndefined
 from markupsafe import Markup
 
 from advisor.process.parts import FailedPart, attempt
-from advisor.report.page.appendix import assumptions, provenance, telemetry
+from advisor.report.page.appendix import assumptions, fields, provenance, telemetry, vibration
 from advisor.report.page.axes.lateral_section import lateral
 from advisor.report.page.blocks import Block, Paragraph, Part, Section
 from advisor.report.page.content import Content
 from advisor.report.page.criterion import criterion
 from advisor.report.page.drawing import LAYER
 from advisor.report.page.estimates import estimates
-from advisor.report.page.fields import fields
 from advisor.report.page.fits import fits
 from advisor.report.page.flight_picture import flight_picture
 from advisor.report.page.flying_qualities import flying
 from advisor.report.page.gap import gap
 from advisor.report.page.headline import headline
 from advisor.report.page.maneuvers import maneuvers
-from advisor.report.page.vibration import vibration
 from advisor.words.quantities import CHANNELS
 
 PageFormat = Literal["html", "md"]

@@ -1,11 +1,17 @@
 """The engineer's screen, with all numbers behind the pilot's word."""
 
+from abc import abstractmethod
+from collections.abc import Sequence
 from dataclasses import replace
+from io import StringIO
 
+from rich.style import Style
+from rich.text import Text
 from textual.app import ComposeResult
 from textual.containers import Container
 from textual.events import Resize
 from textual.geometry import Size
+from textual.widgets import Static
 
 from advisor.campaign.hand_decisions import HandDecision, Verb
 from advisor.session.view import View
@@ -21,17 +27,119 @@ from advisor.tui.panes.fit import Fit
 from advisor.tui.panes.flight import WholeFlightPane
 from advisor.tui.panes.gap import GapPane
 from advisor.tui.panes.last_verdict import VerdictPane
+from advisor.tui.panes.lines import Redrawn
 from advisor.tui.panes.live import Live
 from advisor.tui.panes.maneuvers import Maneuvers
 from advisor.tui.panes.pane import Pane
-from advisor.tui.panes.pane_tabs import PaneTabs
 from advisor.tui.panes.parameters import ParametersPane
 from advisor.tui.panes.qualities import Qualities
 from advisor.tui.panes.replay_bar import ReplayBar
 from advisor.tui.panes.residuals import Residuals
 from advisor.tui.panes.status_line import KeysLine, StatusLine
-from advisor.tui.screens.pane_actions import PaneActions
+from advisor.tui.screens.face import Face
+from advisor.tui.taking import files_of, pane_name, save
 from advisor.words.axes import AxisName
+
+_SAY_S = 8.0
+"""Time for which a sentence with a file path is shown, s. A path takes longer to read than a short message.
+"""
+
+
+class PaneActions(Face):
+    """A screen whose keys act on the pane in front."""
+
+    _view: View | None
+
+    @abstractmethod
+    def pane_in_front(self) -> Pane:
+        """Return the pane with the focus, else the pane that was chosen last."""
+
+    def action_copy(self) -> None:
+        """Copy the pane to the clipboard of the terminal."""
+        if self._view is None:
+            return
+        if self.app.is_web:
+            self.say("the page cannot write the browser's clipboard; key s offers the pane as files", _SAY_S)
+            return
+        pane = self.pane_in_front()
+        text = pane.text()
+        self.app.copy_to_clipboard(text)
+        what = f"{pane_name(pane, self._view)} copied, {text.count(chr(10))} lines."
+        self.say(f"{what} If your terminal cannot copy (it lacks OSC 52), press s.", _SAY_S)
+
+    def action_save(self) -> None:
+        """Write the pane into files in the folder of the log, or offer the files to a browser."""
+        if self._view is None:
+            return
+        pane = self.pane_in_front()
+        if not self.app.is_web:
+            self.say(save(pane, self._view), _SAY_S)
+            return
+        files = files_of(pane, self._view)
+        for name, text in files.items():
+            self.app.deliver_text(StringIO(text), save_filename=name)
+        self.say(f"your browser is offered {' and '.join(files)}", _SAY_S)
+
+    def action_next_output(self) -> None:
+        """Bring the next output of the fit to the top."""
+        self.query_one(Fit).next_output()
+
+    def action_lay_over(self) -> None:
+        """Lay the next channel over the whole flight, or ask for a manoeuvre to lay over the selected one."""
+        pane = self.pane_in_front()
+        if isinstance(pane, WholeFlightPane):
+            pane.lay_over_next()
+            return
+        self.ask(
+            "Number of the manoeuvre to lay over (0: none):",
+            lambda answer: self._lay_over(int(answer)),
+            integer=True,
+        )
+
+    def _lay_over(self, number: int) -> None:
+        view = self._view
+        judged = view.judged if view is not None else None
+        if view is None or judged is None:
+            self.say("There is no manoeuvre yet over which another could be laid.")
+            return
+        numbers = {j.maneuver.number for j in view.state.maneuvers}
+        if number and (number not in numbers or number == judged.maneuver.number):
+            self.say(f"Choose another manoeuvre than {judged.maneuver.number}, from {_listed(numbers)}.")
+            return
+        self.query_one(Fit).lay_over(number or None)
+        self.show(view)
+
+
+def _listed(numbers: set[int]) -> str:
+    return f"{min(numbers)} to {max(numbers)}"
+
+
+_BRACKETS = 2
+
+
+class PaneTabs(Redrawn, Static):
+    """Numbered names of the panes on one line, with the visible pane in brackets. A click chooses a pane."""
+
+    def __init__(self, titles: Sequence[str], short: Sequence[str]) -> None:
+        super().__init__()
+        self._titles, self._short = titles, short
+        self._chosen = 0
+
+    def choose(self, number: int) -> None:
+        """Mark one pane."""
+        self._chosen = number
+        self._redraw()
+
+    def _redraw(self) -> None:
+        room = self.size.width - _BRACKETS
+        titles = self._titles if len(" ".join(self._titles)) <= room else self._short
+        line = Text()
+        for k, title in enumerate(titles, 1):
+            press = Style(meta={"@click": f"screen.choose({k})"})
+            line.append(f"[{title}]" if k == self._chosen else title, press)
+            line.append(" " if k < len(titles) else "")
+        self.update(line, layout=False)
+
 
 # In the order of their numbers.
 PANES: tuple[type[Pane], ...] = (

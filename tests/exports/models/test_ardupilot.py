@@ -10,8 +10,7 @@ import pytest
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft.controls import Elevator
-from advisor.exports.models.ardupilot.servos import parameters_text
-from advisor.exports.models.formats.ardupilot_format import FORMAT, plane_text
+from advisor.exports.models.formats.ardupilot_format import FORMAT, parameters_text, plane_text
 from advisor.exports.models.improvement import ExportedServo
 from advisor.words.problems import ConfigurationError
 from tests.exports.models.cases import CALIBRATION, MODEL, REFERENCE, air_at, flown, improvement

@@ -11,7 +11,7 @@ import pytest
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft.controls import Elevator, ElevatorOutput
-from advisor.flight.elevator.output_signs import pitch_signs
+from advisor.flight.elevator.mixing import pitch_signs
 from advisor.flight.maneuvers.events import ManeuverFlown
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.flight.signals.messages import Columns

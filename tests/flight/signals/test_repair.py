@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from advisor.flight.signals.record import Channel
-from advisor.flight.signals.repair import repaired
+from advisor.flight.stream.maneuver_records import repaired
 from tests.rows import row
 
 T = 0.02 * np.arange(401)

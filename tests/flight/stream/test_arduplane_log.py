@@ -7,7 +7,7 @@ from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft.controls import Elevator
 from advisor.flight.maneuvers.events import ManeuverFlown, SideManeuverFlown
 from advisor.flight.stream.stream import FlightStream
-from advisor.mavlink.logs.tlog import read_tlog
+from advisor.mavlink.logs.formats.telemetry import read_tlog
 from tests.flights import SHIPPED, calm_two
 
 ELEVATOR = Elevator(calibration=((1000.0, 25.0), (1500.0, 0.0), (2000.0, -25.0)), lag_s=0.14)

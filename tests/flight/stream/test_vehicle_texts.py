@@ -6,7 +6,7 @@ import pytest
 from advisor.flight.maneuvers.events import VehicleSaid
 from advisor.flight.signals.messages import Columns
 from advisor.flight.stream.identity import READER
-from advisor.flight.stream.vehicle_texts import VehicleTexts
+from advisor.flight.stream.state import VehicleTexts
 from advisor.flight.vehicle.following import FOLLOW
 
 

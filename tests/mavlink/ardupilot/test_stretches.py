@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from advisor.flight.signals.messages import Columns
-from advisor.mavlink.ardupilot import ardupilot_log
+from advisor.mavlink.logs.formats import dataflash
 from advisor.mavlink.logs.logs import open_log
 from advisor.mavlink.records import record_scan
 from tests.mavlink.ardupilot.test_autopilot_logs import dataflash_flight
@@ -57,6 +57,6 @@ def test_the_stretches_of_a_log_come_one_after_the_other(tmp_path, monkeypatch):
     path.write_bytes(dataflash_flight(FLIGHT_S))
     monkeypatch.setattr(record_scan, "WINDOW_BYTES", WINDOW_BYTES)
     newest = -1
-    for batch in ardupilot_log.read_dataflash(path):
+    for batch in dataflash.read_dataflash(path):
         assert min(int(c.order[0]) for c in batch) > newest
         newest = max(int(c.order[-1]) for c in batch)

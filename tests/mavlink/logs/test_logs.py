@@ -7,8 +7,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from advisor.mavlink.logs.formats.telemetry import read_tlog, scan_tlog
 from advisor.mavlink.logs.logs import open_log
-from advisor.mavlink.logs.tlog import read_tlog, scan_tlog
 from advisor.mavlink.wire.definitions import DEFINITIONS
 from advisor.mavlink.wire.frames import FrameScanner
 from advisor.words.problems import UnusableInputError

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from advisor.mavlink.px4.which_flew import as_flown
+from advisor.mavlink.px4.ulog import as_flown
 
 T_US = 40_000 * np.arange(100)
 
