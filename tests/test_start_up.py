@@ -50,7 +50,7 @@ def test_an_aircraft_file_without_effects_imports_no_catalogue_of_effects() -> N
         "from pathlib import Path; from advisor.aircraft_file.read import load_aircraft; "
         "load_aircraft(Path('logs/arduplane-calm.yaml'))"
     )
-    assert "advisor.aircraft_file.effects" in imported
+    assert "advisor.aircraft_file.estimation" in imported
     assert not {name for name in imported if name.startswith("advisor.gap")}
 
 

@@ -3,24 +3,22 @@ listed at once."""
 
 import re
 from collections.abc import Iterator, Mapping, Sequence
-from copy import deepcopy
 from dataclasses import fields, replace
 from difflib import get_close_matches
 from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
-from pydantic import ConfigDict, TypeAdapter, ValidationError, with_config
+from pydantic import TypeAdapter
 
 from advisor.aircraft.aircraft import Aircraft, Markers, TableColumns
 from advisor.aircraft.controls import Elevator, Pairs, SideControl
 from advisor.aircraft.key import keys_of, sections_of
 from advisor.aircraft.reference import PARAMETERS, SIDE_PARAMETERS, FmuVariables
-from advisor.aircraft_file.effects import effects_schema, mistakes_in
-from advisor.aircraft_file.estimation import mistakes_in_estimation
+from advisor.aircraft_file.estimation import effects_schema, mistakes_in, mistakes_in_estimation
+from advisor.process.settings_file import settings_of, strict
 from advisor.process.yaml_file import read_yaml
 from advisor.words.printable import printable
-from advisor.words.problems import ConfigurationError
 
 
 def load_aircraft(path: Path | None) -> Aircraft:
@@ -50,79 +48,22 @@ def parse_aircraft(content: Any, origin: str = "aircraft file", mend: str = "") 
     ConfigurationError
         Lists every mistake with its path, e.g. ``elevator.calibration[1]``.
     """
-    reader = _reader()
-    # "elevator:" with nothing under it is a section that the user leaves for later.
-    content = {k: v for k, v in content.items() if v is not None} if isinstance(content, dict) else content
-    mistakes: list[str] = []
-    while True:
-        try:
-            aircraft = reader.validate_python(content)
-        except ValidationError as error:
-            mistakes += dict.fromkeys(_sentence(item) for item in error.errors())
-            # The rest is read again, so that one wrong key does not hide another's mistake.
-            remainder = _without(content, [item["loc"] for item in error.errors()])
-            if remainder == content:
-                break
-            content = remainder
-        else:
-            mistakes += _beyond_types(aircraft)
-            if not mistakes:
-                return replace(aircraft, name=printable(aircraft.name))
-            break
-    more = [f"and {len(mistakes) - _MOST_LISTED} more"] if len(mistakes) > _MOST_LISTED else []
-    listed = "; ".join([*mistakes[:_MOST_LISTED], *more])
-    raise ConfigurationError(f"{origin}: {listed}. {mend}".rstrip())
+    aircraft = settings_of(content, _kind(), origin, mend, _beyond_types, _meant)
+    return replace(aircraft, name=printable(aircraft.name))
 
 
 def aircraft_schema() -> dict[str, Any]:
     """Return the JSON schema of the aircraft file, with meaning and cost of each key, for an editor."""
-    schema = _reader().json_schema()
+    schema = TypeAdapter(_kind()).json_schema()
     schema["properties"]["effects"] |= effects_schema()
     return schema
 
 
-def _without(content: Any, locations: list[tuple[int | str, ...]]) -> Any:
-    kept = deepcopy(content)
-    for location in locations:
-        if isinstance(kept, dict) and location:
-            _take_out(kept, location)
-    return kept
-
-
-def _take_out(section: dict[Any, Any], location: Sequence[int | str]) -> None:
-    """Remove only the innermost key at a location, because other keys of the section may be wrong too."""
-    key, *inside = location
-    within = section.get(key)
-    if isinstance(within, dict) and inside and inside[0] in within:
-        _take_out(within, inside)
-    else:
-        section.pop(key, None)
-
-
-def _reader() -> TypeAdapter[Aircraft]:
+def _kind() -> type[Aircraft]:
     # The core's dataclasses stay free of pydantic. The rule that unknown keys are refused is attached here.
-    strict = with_config(ConfigDict(extra="forbid", allow_inf_nan=False))
     for part in _PARTS:
         strict(part)
-    return TypeAdapter(Aircraft)
-
-
-def _sentence(item: Any) -> str:
-    path = ""
-    # Union members add the member's type to the location. A user's file has no such key.
-    for step in item["loc"]:
-        if isinstance(step, int):
-            path += f"[{step}]"
-        elif (
-            not step.startswith(("literal[", "tuple[", "function-", "constrained-"))
-            and step not in _UNION_TAGS
-        ):
-            path += f".{step}" if path else str(step)
-    if item["type"] in ("unexpected_keyword_argument", "extra_forbidden"):
-        return f"{path or 'file'}: unknown key{_meant(path)}"
-    if item["type"] == "dataclass_type":
-        return f"{path or 'file'}: must hold keys with values"
-    return f"{path or 'file'}: {item['msg'][0].lower()}{item['msg'][1:]}"
+    return Aircraft
 
 
 def _meant(path: str) -> str:
@@ -147,8 +88,6 @@ _PARTS = tuple(dict.fromkeys(kind for _, kind in sections_of(Aircraft)))[::-1]
 """The sections of the file, innermost first."""
 _EXAMPLE = "To see every key with its meaning, type: advisor aircraft new --blank -o example.yaml."
 """Sentence on the next step after a file was refused."""
-_MOST_LISTED = 20
-"""Largest number of listed mistakes. With more mistakes, a user has repeated the same one."""
 _MOST_POINTS = 500
 """Largest number of points of a calibration: one for every second microsecond of a servo's travel."""
 _LONGEST_WINDOW = 50
@@ -157,7 +96,6 @@ _OUTPUTS = 32
 """Number of servo outputs in SERVO_OUTPUT_RAW and ACTUATOR_OUTPUT_STATUS."""
 _LONGEST_STEP_S = 0.1
 """Longest communication step of an FMU, s. A short period of one second still has ten such steps."""
-_UNION_TAGS = frozenset({"int", "str", "float", "none"})
 
 
 def _beyond_types(aircraft: Aircraft) -> Iterator[str]:

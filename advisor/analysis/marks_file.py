@@ -4,30 +4,74 @@ Times are seconds since power-on. Every command that reads the log also reads th
 """
 
 import os
-from collections.abc import Sequence
-from math import isfinite
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any
 
 import yaml
+from pydantic import StringConstraints
 
 from advisor.campaign.hand_decisions import ByHand, Remark
 from advisor.flight.maneuvers.marks import LONGEST_S, Mark
 from advisor.process.atomic_file import write_atomically
-from advisor.process.yaml_file import read_yaml
+from advisor.process.settings_file import must, read_settings, strict
 from advisor.words.printable import printable
-from advisor.words.problems import ConfigurationError
 from advisor.words.vehicle_time import stretch
 
 SUFFIX = ".maneuvers.yaml"
 _TEXT_KEYS = {"excluded": "because", "notes": "text", "remarks": "text"}
 """Key of the sentence in each section of the file, by the section's name. Sections have the names of the
 fields of ``ByHand``."""
-_SECTIONS = ("maneuvers", *_TEXT_KEYS)
 _MEND = "Fix the file, move it away, or give --no-marks."
 _HEADING = (
     "# Decided by hand; times in vehicle seconds since power-on. `advisor` reads this file with its log.\n"
 )
+
+
+_Seconds = Annotated[float, must("a number of seconds since power-on")]
+_PowerOn = Annotated[int, must("the number of a power-on, 0 for the first", lambda x: x >= 0 and x == int(x))]
+_Text = Annotated[str, StringConstraints(min_length=1)]
+
+
+@strict
+@dataclass(frozen=True)
+class _Stretch:
+    start_s: _Seconds
+    end_s: _Seconds
+    # Whoever edits the file need not know of power-ons: the first power-on that holds the stretch is meant.
+    boot: _PowerOn | None = None
+
+
+@strict
+@dataclass(frozen=True)
+class _Excluded:
+    at_s: _Seconds
+    because: _Text
+    boot: _PowerOn = 0
+
+
+@strict
+@dataclass(frozen=True)
+class _Noted:
+    at_s: _Seconds
+    text: _Text
+    boot: _PowerOn = 0
+
+
+@strict
+@dataclass(frozen=True)
+class _Decided:
+    maneuvers: list[_Stretch] = field(default_factory=list)
+    excluded: list[_Excluded] = field(default_factory=list)
+    notes: list[_Noted] = field(default_factory=list)
+    remarks: list[_Noted] = field(default_factory=list)
+
+
+def _out_of_order(decided: _Decided) -> Iterator[str]:
+    for i, mark in enumerate(decided.maneuvers):
+        if not 0.0 < mark.end_s - mark.start_s <= LONGEST_S:
+            yield f"maneuvers[{i}]: end_s must lie after start_s, by at most {LONGEST_S:.0f} s"
 
 
 def path_beside(log: Path) -> Path:
@@ -46,22 +90,13 @@ def read_by_hand(log: Path) -> ByHand:
     path = path_beside(log)
     if not os.path.exists(path):  # no path at all counts, too: the log itself is refused later
         return ByHand()
-    content = read_yaml(path, _MEND)
-    if content is None:
-        return ByHand()
-    if not isinstance(content, dict):
-        raise _mistake(path, f"holds no sections; the sections are {', '.join(_SECTIONS)}")
-    for section in content:
-        if section not in _SECTIONS:
-            raise _mistake(path, f"{section}: unknown key, the sections are {', '.join(_SECTIONS)}")
+    decided = read_settings(path, _Decided, _MEND, _out_of_order)
     marks = tuple(
-        _mark(path, f"maneuvers[{i}]", entry) for i, entry in enumerate(_entries(path, content, "maneuvers"))
+        Mark(m.start_s, m.end_s, m.boot, name=f"{path.name}: the mark from {stretch(m.start_s, m.end_s)}")
+        for m in decided.maneuvers
     )
     remarks = {
-        section: tuple(
-            _remark(path, f"{section}[{i}]", entry, key)
-            for i, entry in enumerate(_entries(path, content, section))
-        )
+        section: tuple(Remark(r.at_s, getattr(r, key), r.boot) for r in getattr(decided, section))
         for section, key in _TEXT_KEYS.items()
     }
     return ByHand(marks, **remarks)
@@ -110,52 +145,3 @@ def keep_on_all(logs: Sequence[Path], before: ByHand, by_hand: ByHand) -> str:
 
 def _boot(boot: int | None) -> dict[str, int]:
     return {"boot": boot} if boot else {}
-
-
-def _entries(path: Path, content: dict[str, Any], section: str) -> list[dict[str, Any]]:
-    entries = content.get(section) or []
-    if not isinstance(entries, list) or not all(isinstance(entry, dict) for entry in entries):
-        raise _mistake(path, f"{section}: must be a list of entries with keys")
-    return entries
-
-
-def _mark(path: Path, where: str, entry: dict[str, Any]) -> Mark:
-    _refuse_unknown(path, where, entry, ("start_s", "end_s", "boot"))
-    start_s, end_s = (_number(path, where, entry, key) for key in ("start_s", "end_s"))
-    if not 0.0 < end_s - start_s <= LONGEST_S:
-        raise _mistake(path, f"{where}: end_s must lie after start_s, by at most {LONGEST_S:.0f} s")
-    name = f"{path.name}: the mark from {stretch(start_s, end_s)}"
-    # Whoever edits the file need not know of power-ons: the first power-on that holds the stretch is meant.
-    return Mark(start_s, end_s, _power_on(path, where, entry) if "boot" in entry else None, name=name)
-
-
-def _remark(path: Path, where: str, entry: dict[str, Any], key: str) -> Remark:
-    _refuse_unknown(path, where, entry, ("at_s", key, "boot"))
-    at_s, text = _number(path, where, entry, "at_s"), entry.get(key)
-    if not isinstance(text, str) or not text:
-        raise _mistake(path, f"{where}.{key}: must be a text")
-    return Remark(at_s, text, _power_on(path, where, entry))
-
-
-def _refuse_unknown(path: Path, where: str, entry: dict[str, Any], keys: Sequence[str]) -> None:
-    for key in entry:
-        if key not in keys:
-            raise _mistake(path, f"{where}.{key}: unknown key, the keys are {', '.join(keys)}")
-
-
-def _number(path: Path, where: str, entry: dict[str, Any], key: str) -> float:
-    value = entry.get(key)
-    if isinstance(value, bool) or not isinstance(value, int | float) or not isfinite(value):
-        raise _mistake(path, f"{where}.{key}: must be a number of seconds since power-on")
-    return float(value)
-
-
-def _power_on(path: Path, where: str, entry: dict[str, Any]) -> int:
-    boot = entry.get("boot", 0)
-    if isinstance(boot, bool) or not isinstance(boot, int) or boot < 0:
-        raise _mistake(path, f"{where}.boot: must be the number of a power-on, 0 for the first")
-    return boot
-
-
-def _mistake(path: Path, what: str) -> ConfigurationError:
-    return ConfigurationError(f"{path}: {what}. {_MEND}")

@@ -5,21 +5,21 @@
 
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any, get_args
+from typing import Any
 
 import yaml
 
 from advisor.aircraft.aircraft import Aircraft, Rule
 from advisor.aircraft_file.read import parse_aircraft
 from advisor.process.atomic_file import write_atomically
-from advisor.process.yaml_file import read_yaml
-from advisor.words.problems import ConfigurationError
+from advisor.process.settings_file import read_settings, strict
 
 SUFFIX = ".campaign.yaml"
 _KEYS = ("master", "rule", "target_system", "aircraft")
 _HEADING = "# Options of this flight test; `advisor live --resume` reads this file with its recording.\n"
 
 
+@strict
 @dataclass(frozen=True, slots=True)
 class CampaignFile:
     """Options of a flight test that a resumed flight test uses again."""
@@ -77,16 +77,4 @@ def read_campaign(recording: Path) -> CampaignFile | None:
     path = path_beside(recording)
     if not path.exists():
         return None
-    content = read_yaml(path, "Fix the file, or move it away and give the options again.")
-    if not (
-        isinstance(content, dict)
-        and set(content) <= set(_KEYS)
-        and isinstance(content.get("master"), str)
-        and content.get("rule") in (None, *get_args(Rule))
-        and isinstance(content.get("target_system", 1), int)
-    ):
-        raise ConfigurationError(
-            f"{path}: must hold master and may hold {', '.join(_KEYS[1:])}. Move the file away and give the "
-            "options again."
-        )
-    return CampaignFile(**content)
+    return read_settings(path, CampaignFile, "Fix the file, or move it away and give the options again.")

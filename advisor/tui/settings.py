@@ -1,11 +1,9 @@
 """Settings of the screens, from the settings file of the user."""
 
-from collections.abc import Mapping
-from dataclasses import dataclass, field, fields
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, Literal, get_args
-
-from advisor.words.problems import ConfigurationError
+from typing import Literal
 
 Face = Literal["pilot", "engineer"]
 
@@ -47,43 +45,20 @@ def load_settings(path: Path | None = None) -> Settings:
     ConfigurationError
         The file has mistakes. The message lists each with its key and the allowed values.
     """
-    from advisor.process.yaml_file import read_yaml
+    from advisor.process.settings_file import read_settings, strict
 
     path = path or settings_path()
     if not path.exists():
         return Settings()
-    data = read_yaml(path, "See `advisor locate config`.") or {}
-    if not isinstance(data, dict):
-        raise ConfigurationError(
-            f"{path} must hold keys and values, as in `theme: light`. Fix the file, or move it away."
-        )
-    mistakes = [*_unknown(data), *_wrong(data)]
-    if mistakes:
-        raise ConfigurationError(f"{path}: {'; '.join(mistakes)}. Fix the file, or move it away.")
-    return Settings(**data)
+    return read_settings(path, strict(Settings), "Fix the file, or move it away.", _wrong)
 
 
-def _unknown(data: dict[str, Any]) -> list[str]:
-    keys = [f.name for f in fields(Settings)]
-    return [f"unknown key {key!r} (known: {', '.join(keys)})" for key in data if key not in keys]
-
-
-def _wrong(data: dict[str, Any]) -> list[str]:
+def _wrong(settings: Settings) -> Iterator[str]:
     from advisor.tui.keys import ACTIONS
     from advisor.tui.themes import NAMES
 
-    mistakes = []
-    for key, allowed in (("theme", NAMES), ("screen", get_args(Face))):
-        if key in data and data[key] not in allowed:
-            mistakes.append(f"{key}: {data[key]!r} is none of {', '.join(allowed)}")
-    if not isinstance(data.get("sound", True), bool):
-        mistakes.append(f"sound: {data['sound']!r} is neither true nor false")
-    keys = data.get("keys", {})
-    if not isinstance(keys, dict):
-        return [*mistakes, "keys: must map actions to keys, as in `keys: {quit: ctrl+q}`"]
-    for action, key in keys.items():
+    if settings.theme not in NAMES:
+        yield f"theme: {settings.theme!r} is none of {', '.join(NAMES)}"
+    for action in settings.keys:
         if action not in ACTIONS:
-            mistakes.append(f"keys.{action}: no such action (known: {', '.join(sorted(ACTIONS))})")
-        elif not isinstance(key, str) or not key:
-            mistakes.append(f"keys.{action}: {key!r} is no key, as `ctrl+q` would be")
-    return mistakes
+            yield f"keys.{action}: no such action (known: {', '.join(sorted(ACTIONS))})"

@@ -77,15 +77,15 @@ def test_it_is_on_the_disk_before_it_takes_the_place_of_the_old_one(tmp_path, mo
 
 MISTAKES = {
     "maneuvers: [": "not a YAML file, line",
-    "- 1": "holds no sections",
+    "- 1": "file: must hold keys with values",
     "marks: []": "marks: unknown key",
-    "maneuvers: 3": "maneuvers: must be a list",
+    "maneuvers: 3": "maneuvers: input should be a valid list",
     "maneuvers: [{start_s: 3, end: 4}]": "maneuvers[0].end: unknown key",
     "maneuvers: [{start_s: three, end_s: 4}]": "maneuvers[0].start_s: must be a number",
     "maneuvers: [{start_s: 5, end_s: 4}]": "end_s must lie after start_s",
     "maneuvers: [{start_s: 5, end_s: 400}]": "by at most 100 s",
     "maneuvers: [{start_s: 5, end_s: 9, boot: x}]": "maneuvers[0].boot: must be the number",
-    "notes: [{at_s: 5}]": "notes[0].text: must be a text",
+    "notes: [{at_s: 5}]": "notes[0].text: field required",
     "excluded: [{at_s: .nan, because: gust}]": "excluded[0].at_s: must be a number",
 }
 

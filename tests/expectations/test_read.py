@@ -55,7 +55,7 @@ WRONG = {
     "derivatives: {L_p: {of: model, within: 1}}": "derivatives.L_p.of: the aircraft file's model has no L_p",
     "derivatives: {M_q: {of: log, within: 1}}": "log: is missing",
     "modes: {dutch_roll_zeta: {of: model, within: 1}}": "the aircraft file's model has no Y_beta",
-    "levels: {pitch: 4}": "levels.pitch: must be a level of 1 to 3, is 4",
+    "levels: {pitch: 4}": "levels.pitch.A: must be a level of 1 to 3, is 4",
     "gap: {lateral: 1}": "gap.lateral: the aircraft file gives no simulator of this axis",
     "longest_pause_s: {q: 0}": "longest_pause_s.q: must be a number above 0, is 0",
     "log: nowhere.tlog": "log: there is no file",

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.aircraft_file.effects import mistakes_in
+from advisor.aircraft_file.estimation import mistakes_in
 from advisor.gap.candidates.catalogue import variants_for
 from advisor.gap.candidates.known import beyond_known, changes_in, together, with_known
 from advisor.gap.effects import EFFECTS
