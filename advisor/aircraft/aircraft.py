@@ -117,7 +117,6 @@ class Estimation:
 
     @property
     def added(self) -> tuple[AddedTerm, ...]:
-        """The terms, read."""
         return tuple(map(parse_term, self.terms))
 
 

@@ -23,7 +23,6 @@ class ScriptIdentity:
 
     @classmethod
     def of(cls, aircraft: Aircraft) -> Self:
-        """Return the identity of an aircraft file."""
         name = printable(aircraft.name).encode("ascii", "replace").decode()[:_LETTERS].strip()
         elevator = aircraft.elevator
         stated = [(each.output, each.calibration) for each in (elevator, aircraft.aileron, aircraft.rudder)]

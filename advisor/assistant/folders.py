@@ -68,7 +68,6 @@ class Folders:
 
     @property
     def listed(self) -> str:
-        """Paths of the folders in one line."""
         return ", ".join(map(str, self.roots))
 
     def logs(self) -> Iterator[Path]:

@@ -35,7 +35,6 @@ class Flown:
         self.examined = replace(self.examined, excluded_because=because)
 
     def judged(self, verdict: ManeuverVerdict) -> JudgedManeuver:
-        """Return the manoeuvre with its verdict."""
         examined = self.examined
         cautions = dict.fromkeys((*self.revisions, *verdict.cautions))
         said = replace(verdict, cautions=tuple(cautions)) if self.revisions else verdict
@@ -97,7 +96,6 @@ class AxisCampaign(ABC):
         self.decide()
 
     def note(self, number: int, text: str) -> None:
-        """Add a note on a manoeuvre."""
         self._of(number).notes += (text,)
         self._judge()
 
@@ -114,11 +112,9 @@ class AxisCampaign(ABC):
 
     @property
     def estimates(self) -> tuple[Estimate | NoEstimate, ...]:
-        """Estimates of the single manoeuvres."""
         return tuple(flown.examined.estimate for flown in self._flown)
 
     def numbered(self, number: int) -> JudgedManeuver:
-        """Return the judged manoeuvre with a number."""
         return next(judged for judged in self.judged if judged.maneuver.number == number)
 
     def _add(self, maneuver: Maneuver, by_hand: ByHand) -> None:

@@ -245,7 +245,6 @@ class Campaign:
         return None if self._aside.is_busy else lambda: self._so_far().axes
 
     def _contradictions(self, shown: _Verdicts) -> tuple[InstrumentFinding, ...]:
-        """Return the contradictions of the instruments, from the motion and from the fits."""
         by_motion = together(shown.maneuvers, self._stream.instruments)
         side = shown.axes.get("lateral")
         of_fits = with_fit(by_motion, shown.axes["pitch"].model, shown.estimates, self._aircraft)
@@ -306,7 +305,6 @@ class Campaign:
         return self._heard_verdicts()
 
     def _judge(self, half: AxisCampaign, maneuver: Maneuver, decided: ByHand) -> ManeuverJudged:
-        """Judge a manoeuvre, and decide on the test."""
         half.take(maneuver, decided)
         event = ManeuverJudged(
             half.judged[-1], half.flight_test, self._plan, half.axis, half.take_revisions()

@@ -96,7 +96,6 @@ class Engineer:
         self._write(f"a manoeuvre is marked from {clock(ended.start_s)} to here")
 
     def note(self, number: int, text: str, axis: AxisName = "pitch") -> None:
-        """Write a note on a manoeuvre of an axis."""
         half = self._axes[axis]
         self.decided = self.decided.noting(half.numbered(number).maneuver, text)
         self._write(f"note on {OF[axis]}manoeuvre {number}: {text}")

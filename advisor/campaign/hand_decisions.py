@@ -51,7 +51,6 @@ class ByHand:
         return next((r.text for r in self.excluded if r.concerns(maneuver)), None)
 
     def notes_on(self, maneuver: Maneuver) -> tuple[str, ...]:
-        """Return the notes on a manoeuvre."""
         return tuple(r.text for r in self.notes if r.concerns(maneuver))
 
     def excluding(self, maneuver: Maneuver, because: str | None) -> "ByHand":

@@ -31,7 +31,6 @@ class Criterion:
 
     @property
     def chosen(self) -> RuleProgress:
-        """Progress of the rule that decides."""
         return self.by_rule[self.rule]
 
 

@@ -42,7 +42,6 @@ class CrewPlan:
 
     @property
     def is_complete(self) -> bool:
-        """Whether no axis is open."""
         return not self.open
 
 

@@ -53,7 +53,6 @@ class ScriptParameters:
         self._parameters = Parameters(lambda name: name.startswith((_PREFIX, "SERVO")))
 
     def feed(self, columns: Sequence[Columns]) -> None:
-        """Take parameter messages."""
         for part in columns:
             if part.name == "PARAM_VALUE":
                 for name, _, stated in self._parameters.news(part):

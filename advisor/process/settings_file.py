@@ -145,7 +145,6 @@ def resembling(key: str, names: Sequence[str]) -> str:
 
 
 def _keys_at(kind: type, path: str) -> list[str]:
-    """Return the keys of the section that holds the key at a path."""
     for step in re.sub(r"\[\d+\]", "", path).split(".")[:-1]:
         kind = next(_dataclasses_in(get_type_hints(kind).get(step)), kind)
     return [field.name for field in fields(kind)]

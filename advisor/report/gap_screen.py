@@ -270,7 +270,6 @@ def command_lines(command: str, width: int) -> list[str]:
 
 
 def _hanging(mark: str, text: str, width: int) -> Text:
-    """Return a text with a hanging indent after a mark."""
     behind = " " * len(f"{mark} ")
     return Text(fill(f"{mark} {text}", width, subsequent_indent=behind, break_on_hyphens=False))
 

@@ -145,7 +145,6 @@ class AnalysisText:
             yield from (Text(line, style="bold" if line[0] in "FC" else "") for line in lines)
 
     def _rules(self, verdict: FlightTestVerdict) -> Iterator[Text]:
-        """Yield the history of every rule, and the information."""
         is_short = not self.every_movement and verdict.rule == "information"
         others = [rule for rule in _PAPERS if rule in verdict.by_rule] if is_short else []
         for name, progress in verdict.by_rule.items():

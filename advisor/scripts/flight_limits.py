@@ -30,6 +30,5 @@ class FlightLimits:
 
     @classmethod
     def of(cls, aircraft: Aircraft, lowest_m: float = LOWEST_M) -> "FlightLimits":
-        """Return the limits of an aircraft file."""
         limits = aircraft.limits
         return cls(limits.bank_deg, limits.airspeed_change_percent, lowest_m)

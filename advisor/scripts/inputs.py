@@ -203,7 +203,6 @@ class ScriptInput:
 
     @property
     def moved(self) -> tuple[Control, ...]:
-        """Controls that the input moves."""
         return tuple(self.sines) if self.sines is not None else (STEPPED[self.name][0],)
 
 

@@ -29,7 +29,6 @@ class SessionReport:
     """Reasons why no manoeuvre can be judged; empty after the first verdict."""
 
     def grown_old(self, who: str, age_s: float) -> "SessionReport":
-        """Return the report with a warning of its age."""
         sentence = f"{who} NOT ANSWERING for {age_s:.0f} s: the values below are old"
         health = replace(self.health, condition="stale", sentence=sentence, alarm=sentence)
         return replace(self, health=health)
@@ -96,7 +95,6 @@ class Again:
 
     @classmethod
     def of(cls, index: int, judged: JudgedManeuver) -> "Again":
-        """Return the new verdict on the manoeuvre."""
         return cls(index, judged.verdict, judged.excluded_because, judged.notes)
 
     def applied_to(self, maneuvers: Sequence[JudgedManeuver]) -> JudgedManeuver:

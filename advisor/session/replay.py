@@ -106,7 +106,6 @@ class LogPlayer:
         return self._hurrying or self._tempo.speed > 1.0
 
     def playback(self) -> Playback:
-        """Return the position of the replay."""
         duration_s = self._timeline.duration_s if self._timeline else 0.0
         return Playback(self._position_s, duration_s, self._hurrying)
 

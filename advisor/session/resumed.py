@@ -83,5 +83,4 @@ class ResumedSource:
         return "; ".join(filter(None, (said, newest)))
 
     def close(self) -> None:
-        """Close the link."""
         self._link.close()

@@ -101,7 +101,6 @@ class DataBegin:
     parameters."""
 
     def reached(self, state: CampaignState, position_s: float = 0.0) -> bool:
-        """Return whether the present data are sufficient."""
         return state.serves
 
 

@@ -22,7 +22,6 @@ class Reporter:
         self._last: SessionReport | None = None
 
     def tell(self, report: SessionReport) -> None:
-        """Send one report."""
         send(self._pipe, report if self._last is None else changes(self._last, report))
         self._last = report
 

@@ -51,7 +51,6 @@ class InterfaceFault:
     fix: str
 
     def refuse(self, description: str) -> UnusableInputError:
-        """Return the error message that refuses a simulator with this fault."""
         return UnusableInputError(
             "simulator_interface", f"{description} gives {self.quantity} {self.observed}.", self.fix
         )
@@ -239,7 +238,6 @@ def _slope(x: FloatArray, y: FloatArray) -> float:
 
 
 def _is(factor: float, unit: float) -> bool:
-    """Return whether a factor equals that of a sign or unit."""
     return factor * unit > 0.0 and abs(log(factor / unit)) < _NEAR
 
 

@@ -198,7 +198,6 @@ class JsbsimFlight:
 
     @property
     def mass_slug(self) -> float:
-        """Mass of the aircraft with its fuel."""
         return float(self.fdm["inertia/mass-slugs"])
 
     def _weigh(self, mass_kg: float | None) -> None:

@@ -54,7 +54,6 @@ def foreign_properties(roots: Iterable[ET.Element]) -> tuple[str, ...]:
 
 
 def _without_prose(parent: ET.Element, element: ET.Element) -> Iterator[tuple[ET.Element, ET.Element]]:
-    """Yield every element that is no prose, with its parent first."""
     if element.tag in _PROSE:
         return
     yield parent, element

@@ -99,7 +99,6 @@ class ReplayActions(_Actions):
     """Actions of the application that exist only while a log is played."""
 
     def action_pause(self) -> None:
-        """Pause the replay, or continue it."""
         self._play(replace(self._tempo, paused=not self._tempo.paused))
 
     def action_step(self) -> None:

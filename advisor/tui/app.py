@@ -206,7 +206,6 @@ class AdvisorApp(ReplayActions, LinkActions, HandActions):
         self.set_interval(_QUIET_S, self._tidy_if_quiet)
 
     def on_unmount(self) -> None:
-        """Stop the conductor."""
         self.conductor.stop()
         self._garbage.end()
 
@@ -338,7 +337,6 @@ class AdvisorApp(ReplayActions, LinkActions, HandActions):
         super().refresh_css(animate)
 
     def action_next_theme(self) -> None:
-        """Switch to the next theme."""
         here = NAMES.index(self.theme) if self.theme in NAMES else -1
         theme = NAMES[(here + 1) % len(NAMES)]
         self.theme = theme

@@ -57,7 +57,6 @@ class WebServer:
 
     @property
     def at_work(self) -> bool:
-        """Whether the server is still running."""
         return self._thread.is_alive()
 
     def _run(self) -> None:

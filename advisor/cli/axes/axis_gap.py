@@ -63,11 +63,9 @@ class AxisGap(ABC, Generic[C]):
         """Return the model for the improved aircraft file."""
 
     def exported(self, compared: C, diagnosis: Diagnosis) -> FlownModel:
-        """Return the model for other programs."""
         return self.improved(compared, diagnosis)
 
     def improves(self, diagnosis: Diagnosis) -> bool:
-        """Return whether there is an improved simulator to write."""
         return diagnosis.improves
 
     @abstractmethod
@@ -98,7 +96,6 @@ class Proved(Generic[C]):
     proof: Proof | None
 
     def exported(self) -> FlownModel:
-        """Return the model for other programs."""
         return self.axis.exported(self.compared, self.diagnosis)
 
     def answer(self, asked: GapAsked, everything: bool, writes: bool) -> AxisAnswer:

@@ -63,11 +63,9 @@ class SideGap(AxisGap[SideCompared]):
         return prove_side(compared, fresh, self.asked.prior, tell)
 
     def improved(self, compared: SideCompared, diagnosis: Diagnosis) -> FlownModel:
-        """Return the model for the improved aircraft file."""
         return replace(self.exported(compared, diagnosis), pitch=None)
 
     def exported(self, compared: SideCompared, diagnosis: Diagnosis) -> FlownModel:
-        """Return the model for other programs."""
         return improved_side(replace(compared, diagnosis=diagnosis))
 
     def steps(

@@ -66,7 +66,6 @@ class PitchGap(AxisGap[Compared]):
         return prove(flown, fresh, aircraft, read.target_system, tell, asked.prior, compared)
 
     def improved(self, compared: Compared, diagnosis: Diagnosis) -> FlownModel:
-        """Return the model for the improved aircraft file."""
         return FlownModel(compared.aircraft, None, self._side, diagnosis)
 
     def exported(self, compared: Compared, diagnosis: Diagnosis) -> FlownModel:
@@ -79,7 +78,6 @@ class PitchGap(AxisGap[Compared]):
         return replace(model, unchanged=not self.improves(diagnosis))
 
     def improves(self, diagnosis: Diagnosis) -> bool:
-        """Return whether there is an improved simulator to write."""
         return diagnosis.improves or any(other.diagnosis.verdict in IMPROVING for other in self.beside or ())
 
     def steps(

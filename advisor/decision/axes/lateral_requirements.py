@@ -62,7 +62,6 @@ class LateralLevels:
 
     @property
     def governing(self) -> LevelFound:
-        """Level of the worst mode."""
         levels = self.by_mode.values()
         return LevelFound(
             self.category,

@@ -104,7 +104,6 @@ class _SideTest:
 
     @property
     def holds(self) -> bool:
-        """Whether the criterion holds now."""
         return self.shares[self.worst] < INFORMATION_LIMIT_PERCENT and not self.flown_fewer_than(CHECKED)
 
     def times(self, control: str) -> int:

@@ -43,7 +43,6 @@ class FlownInput:
     def of(
         cls, maneuver: Maneuver, reasons: Sequence[Reason], estimate: Estimate | NoEstimate | None = None
     ) -> "FlownInput":
-        """Return the input of a manoeuvre with these reasons against it, and with its estimate."""
         moved = {name: _amplitude(maneuver, name) for name in LATERAL.inputs}
         control = max(moved, key=lambda name: moved[name])
         bank = maneuver.channels.get("bank")

@@ -96,7 +96,6 @@ class FlownModel:
 
     @property
     def name(self) -> str:
-        """Name of the aircraft."""
         return self.aircraft.name
 
     @property

@@ -35,7 +35,6 @@ class Commanded:
         return Decoded(self.channel, self.source, "commanded", self.t, y, self.order)
 
     def rows(self, which: slice | NDArray[Any]) -> "Commanded":
-        """Return the samples in the given rows."""
         return replace(self, t=self.t[which], angles=self.angles[which], order=self.order[which])
 
 

@@ -52,7 +52,6 @@ class DelayedFit:
     """Shape (k,): standard deviations of the factors, 0 for a known factor."""
 
     def factor(self, k: int = 0) -> Measured:
-        """Return the factor of a summand."""
         return Measured(float(self.factors[k]), float(self.factor_stds[k]))
 
     @property

@@ -89,7 +89,6 @@ class ExaminedRecords:
         return self._growing[2].of_longer(channels)
 
     def count(self, evidence: Evidence, findings: tuple[InstrumentFinding, ...]) -> None:
-        """Add the evidence of a record, with the findings up to this record."""
         self.counted += 1
         self._evidence = pooled((self._evidence, evidence))
         self.findings = findings
@@ -116,11 +115,9 @@ class Work:
 
     @property
     def done(self) -> Examined:
-        """The finished examination."""
         return Examined(self.channels, self.evidence, tuple(self.findings), tuple(self._corrections))
 
     def correct(self, name: str, correction: Correction) -> None:
-        """Replace a channel by its corrected one."""
         if name in self.channels:
             self._corrections.append((name, correction))
             self.channels[name] = correction(self.channels[name])

@@ -67,7 +67,6 @@ class KinematicCheck:
 
     @property
     def possible(self) -> bool:
-        """Whether the channels suffice for the check."""
         return self.finding != "not possible"
 
 
@@ -218,7 +217,6 @@ def _told_by(instruments: FloatArray | None, columns: FloatArray) -> FloatArray:
 def _judge(
     lag: float, lag_std: float, scale: float, scale_std: float, explained: float
 ) -> tuple[Finding, str]:
-    """Return the finding as a word and as a sentence."""
     if explained < 0.7:
         share = 100 * max(explained, 0.0)
         return "inconsistent", (

@@ -42,7 +42,6 @@ class Bins:
 
     @property
     def movement(self) -> slice:
-        """Bins of the movement."""
         return slice(self.first, len(self.moved))
 
     @property

@@ -70,7 +70,6 @@ class Mark:
         return replace(self, end_s=end_s, free_s=min(self.free_s, max(last_s - end_s, 0.0)))
 
     def overlaps(self, start_s: float, end_s: float) -> bool:
-        """Return whether the mark overlaps a stretch of its power-on."""
         return self.start_s < end_s and start_s < self.end_s
 
 

@@ -177,7 +177,6 @@ def _steps(
 
 
 def _name(t: FloatArray, steps: tuple[tuple[float, float], ...], is_stepped: bool) -> InputKind:
-    """Return the name of the input that pilots use."""
     levels = np.array([level for _, level in steps[:-1]])
     lasting = np.diff([onset for onset, _ in steps])
     share = np.abs(levels) / max(float(np.max(np.abs(levels))), 1e-12)

@@ -138,7 +138,6 @@ class Segmenter:
         return self._drain()
 
     def finish(self) -> list[Span]:
-        """Return the spans that end at the end of the samples."""
         if self._samples.size:
             last = float(self._samples.t[-1])
             if self._pending is not None:

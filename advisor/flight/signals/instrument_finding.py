@@ -50,7 +50,6 @@ class InstrumentFinding:
 
     @property
     def problem(self) -> Problem:
-        """Problem with the finding and its remedy."""
         return Problem(self.code, f"{self.sentence}.", f"Fix: {self.fix}.")
 
     @property

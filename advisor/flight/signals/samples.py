@@ -56,7 +56,6 @@ class Samples:
         return float(np.median(np.diff(recent))) if len(recent) > 2 else np.inf
 
     def clear(self) -> None:
-        """Drop all samples."""
         self.size = 0
 
     def _make_room(self, from_s: float) -> None:

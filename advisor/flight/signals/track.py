@@ -169,7 +169,6 @@ class Track:
 
     @property
     def status(self) -> ChannelStatus:
-        """Arrival status of the channel."""
         if self._status is not None:
             return self._status
         self._count()

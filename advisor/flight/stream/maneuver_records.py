@@ -172,7 +172,6 @@ class ManeuverRecords:
         notes: Sequence[str],
         grows: bool = False,
     ) -> tuple[Maneuver, Evidence]:
-        """Return the next manoeuvre of an axis from its recorded channels, with its evidence."""
         length = (span.record_from_s, span.end_s)
         examined = axis.so_far(channels, *length) if grows else axis.examined(channels)
         recorded = {**examined.channels, **self._air(span, up_to_order)}
@@ -208,7 +207,6 @@ class ManeuverRecords:
         return commands
 
     def _air(self, span: Span, up_to_order: int | None) -> dict[str, Channel]:
-        """Return the channels of a record for the air density and the wind."""
         cut = {name: self._whole(name, span, up_to_order) for name in AIR_UNITS}
         air_channels = {name: air for name, air in cut.items() if air is not None}
         north, east, heading = (

@@ -235,7 +235,6 @@ class StreamState:
 
     @property
     def other_systems(self) -> frozenset[int]:
-        """System ids of the other vehicles on the stream."""
         return self._who.other_systems
 
     @property

@@ -32,7 +32,6 @@ class Breaks:
         self.begin()
 
     def begin(self) -> None:
-        """Begin another power-on."""
         self._last_s = np.nan
         self._missed: list[Stretch] = []
         self._leaps: list[Stretch] = []

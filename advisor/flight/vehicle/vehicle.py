@@ -57,7 +57,6 @@ class Vehicle:
         return mends_of(self.autopilot, self.carrier, self.log_profile)
 
     def with_firmware(self, firmware: str) -> "Vehicle":
-        """Return the vehicle with a known version."""
         return replace(self, firmware=firmware)
 
 
@@ -105,7 +104,6 @@ class VehicleFinder:
         return self._target is None and self.vehicle is not None and bool(self.others)
 
     def follow(self, vehicle: Vehicle) -> None:
-        """Follow another vehicle."""
         self.others |= {other for other in self.heard if self.vehicle is not None}
         self.others.discard(vehicle.system)
         self.vehicle = vehicle

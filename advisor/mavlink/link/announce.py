@@ -127,7 +127,6 @@ class SeparateConnection(Talker):
         return []
 
     def leave(self, now_s: float) -> None:
-        """Close the connection."""
         if self._transport is not None:
             self._transport.close()
             self._transport = None

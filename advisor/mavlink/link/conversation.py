@@ -29,7 +29,6 @@ class Conversation:
         self._packer = Packer(key)
 
     def join(self, talker: Talker) -> None:
-        """Add a talker."""
         self._talkers.append(talker)
 
     def hear(self, frames: list[Frame], vehicle: Ids | None, now_s: float) -> list[str]:

@@ -33,7 +33,6 @@ class Decoding:
         self._followed: Ids | None = None
 
     def feed(self, records: bytes) -> list[Columns]:
-        """Return the messages in the given records."""
         columns = self._scanner.feed(records)
         for piece in pieces(columns, by_second=True):
             self._who.learn(piece)

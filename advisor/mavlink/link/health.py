@@ -104,7 +104,6 @@ class ReportedHealth:
 
     @property
     def statistics(self) -> LinkStatistics:
-        """Health of the link in the newest report."""
         return replace(self._newest, unanswered_s=self._unanswered_s)
 
     def reconnected(self) -> None:

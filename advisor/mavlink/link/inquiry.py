@@ -80,7 +80,6 @@ class Inquiry(Talker):
             self._existing.update(details)
 
     def speak(self, vehicle: tuple[int, int] | None, now_s: float) -> list[Any]:
-        """Return the requests that are due."""
         if vehicle is None:
             return []
         if self._vehicle not in (None, vehicle):

@@ -56,11 +56,9 @@ class Intake:
 
     @property
     def vehicle_peer(self) -> Peer | None:
-        """Network address of the vehicle."""
         return self._peers.get(self.vehicle[0]) if self.vehicle is not None else None
 
     def follow(self, vehicle: tuple[int, int]) -> None:
-        """Follow another vehicle."""
         if self.vehicle is not None:
             self.other_vehicles.add(self.vehicle[0])
         self.other_vehicles.discard(vehicle[0])

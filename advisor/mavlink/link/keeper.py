@@ -62,7 +62,6 @@ class Reader:
         Thread(target=self._run, daemon=True).start()
 
     def send(self, message: _Message) -> None:
-        """Queue a message for the reader."""
         if isinstance(message, Heard):
             self._behind_bytes += len(message.records)
         self._waiting.put(message)

@@ -95,7 +95,6 @@ class Line:
         return self._transport is not None and self._transport.send(raw, to)
 
     def close(self) -> None:
-        """Close the socket or line."""
         if self._transport is not None:
             self._transport.close()
             self._transport = None

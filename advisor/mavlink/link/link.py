@@ -44,7 +44,6 @@ class MotionNow:
         """Newest bank, rad; NaN before the first message."""
 
     def look(self, frames: list[Frame], system: int) -> None:
-        """Read the newest values from frames of this system."""
         for frame in frames:
             if frame.system != system:
                 continue
@@ -243,7 +242,6 @@ class Link:
 
     @property
     def statistics(self) -> LinkStatistics:
-        """Present health of the link."""
         now_s = time.monotonic()
         counters = self._intake.counters
         statistics = LinkStatistics(

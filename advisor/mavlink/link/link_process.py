@@ -61,12 +61,10 @@ class LinkProcess:
 
     @property
     def door(self) -> Door:
-        """Address of the process."""
         return self._keeping.door
 
     @property
     def master(self) -> str:
-        """Connection of the link."""
         return self._keeping.master
 
     @property

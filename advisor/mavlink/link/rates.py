@@ -55,7 +55,6 @@ class MessageRequest:
         return self.tries >= (1 if self.rounds else MOST_TRIES)
 
     def settle(self, answer: str, now_s: float) -> None:
-        """Take the answer to a request, or its absence."""
         self.answer, self.tries = answer, 0
         if answer == "granted":
             self.due_s = float("inf")

@@ -92,7 +92,6 @@ class Recorder:
         return f"the disk has not answered for {waits_s:.0f} s; what is heard waits in memory"
 
     def write(self, records: bytes) -> None:
-        """Queue complete records for writing."""
         with self._lock:
             if len(self._pending) + len(records) > MOST_UNSAVED_BYTES:
                 self._dropped += len(records)

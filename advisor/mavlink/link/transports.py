@@ -43,11 +43,9 @@ class UdpTransport(Transport):
             raise
 
     def wait(self, timeout_s: float) -> bool:
-        """Return whether bytes are available."""
         return bool(select.select([self._socket], [], [], timeout_s)[0])
 
     def receive(self) -> list[tuple[Peer, bytes]]:
-        """Return all bytes that have arrived."""
         pieces: list[tuple[Peer, bytes]] = []
         for _ in range(_MOST_CHUNKS):
             try:
@@ -69,17 +67,14 @@ class UdpTransport(Transport):
         return True
 
     def close(self) -> None:
-        """Close the socket."""
         self._socket.close()
 
     @property
     def port(self) -> int | None:
-        """Local network port."""
         return int(self._socket.getsockname()[1])
 
     @property
     def descriptor(self) -> int | None:
-        """File descriptor of the socket."""
         return self._socket.fileno()
 
 
@@ -112,7 +107,6 @@ class StreamTransport(Transport):
         self._stream = stream
 
     def wait(self, timeout_s: float) -> bool:
-        """Return whether bytes are available."""
         ends = [end for end in (self._stream or self._listener,) if end is not None]
         ready = select.select(ends, [], [], timeout_s)[0]
         if ready and self._stream is None and self._listener is not None:
@@ -150,14 +144,12 @@ class StreamTransport(Transport):
         return True
 
     def close(self) -> None:
-        """Close the socket."""
         for end in (self._stream, self._listener):
             if end is not None:
                 end.close()
 
     @property
     def port(self) -> int | None:
-        """Local network port."""
         end = self._listener or self._stream
         return None if end is None or end.family == socket.AF_UNIX else int(end.getsockname()[1])
 
@@ -173,7 +165,6 @@ class SerialTransport(Transport):
         self._line = serial.Serial(address.host, address.port, timeout=0, write_timeout=0.5, exclusive=True)
 
     def wait(self, timeout_s: float) -> bool:
-        """Return whether bytes are available."""
         try:
             return bool(select.select([self._line.fileno()], [], [], timeout_s)[0])
         except (OSError, ValueError, TypeError) as error:
@@ -194,7 +185,6 @@ class SerialTransport(Transport):
         return True
 
     def close(self) -> None:
-        """Close the line."""
         self._line.close()
 
 
@@ -208,7 +198,6 @@ class PymavlinkTransport(Transport):
         self._may_end = address.text.startswith("ws")
 
     def wait(self, timeout_s: float) -> bool:
-        """Return whether bytes are available."""
         return bool(self._connection.select(timeout_s))
 
     def receive(self) -> list[tuple[Peer, bytes]]:
@@ -225,7 +214,6 @@ class PymavlinkTransport(Transport):
         return True
 
     def close(self) -> None:
-        """Close the connection."""
         self._connection.close()
 
 

@@ -37,7 +37,6 @@ class NextOrder:
 
     @property
     def what(self) -> str:
-        """The order as a noun."""
         return "the next input" if self.which else "the end of the input"
 
 

@@ -69,7 +69,6 @@ class _Growing:
         self._size = 0
 
     def extend(self, values: NDArray[Any]) -> None:
-        """Append values of one type."""
         if self._size == 0:
             self._values = np.empty(len(values), values.dtype)
         size = self._size + len(values)
@@ -116,7 +115,6 @@ class _Collected:
             done = row + 1
 
     def finish(self) -> Iterator[Stretch]:
-        """Yield the last stretch of the last log."""
         yield from self._end_run()
         yield self._last()
 
@@ -185,7 +183,6 @@ class _Collected:
             )
 
     def _tables(self, keep_from: float = math.inf) -> dict[str, RecordTable]:
-        """Return the collected records, and keep copies of the records that are repeated."""
         tables: dict[str, RecordTable] = {}
         for number, name, layout, divisors in self._defined():
             if layout is None or name not in self._wanted:

@@ -156,7 +156,6 @@ def _cause(error: BaseException) -> str:
 
 
 def _named(packages: Versions) -> Versions:
-    """Return package versions with the advisor under one name."""
     return {**packages, "advisor": next(filter(None, map(packages.get, _ADVISOR)), None)}
 
 

@@ -128,8 +128,6 @@ def _servo(control: SideControl) -> Servo:
 
 
 def _as_record(replay: Replay, inputs: Inputs, t: FloatArray) -> AxisRecord:
-    """Return a replay as a record at the stamps of the inputs."""
-
     def read(series: FloatArray) -> Signal:
         return Signal(t, np.interp(inputs.t, replay.t, series))
 

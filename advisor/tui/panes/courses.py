@@ -63,7 +63,6 @@ drifts shows an aircraft that changes.
             self.subtitle("├┤ ± 95 %  ── joint  ╌╌ simulator")
 
     def rows(self) -> TableRows:
-        """Return one row for each manoeuvre and parameter."""
         header = (
             "parameter",
             "unit",

@@ -32,6 +32,5 @@ begin anew where a line says that another power-on, flight or vehicle begins.
         self.query_one(VerticalScroll).anchor()
 
     def show(self, view: View) -> None:
-        """Write the newest sentences of the event log."""
         if view.log and self.changed(view.log):
             self.write((line[:_TIME], line[_TIME:]) for line in view.log[-_SHOWN:])

@@ -98,7 +98,6 @@ with 0 takes the second away.
         self._redraw()
 
     def next_output(self) -> None:
-        """Bring the next output to the top."""
         self._first = (self._first + 1) % len(self._outputs())
         self._redraw()
 
@@ -126,11 +125,9 @@ with 0 takes the second away.
             self._look(self._sight and self._sight.zoomed(1 if event.up else -1, event.x))
 
     def action_cursor(self, direction: int, finely: bool = False) -> None:
-        """Move the cursor."""
         self._look(self._sight and self._sight.stepped(direction, self._stamps(), finely=finely))
 
     def action_zoom(self, direction: int) -> None:
-        """Zoom in or out in time."""
         self._look(self._sight and self._sight.zoomed(direction))
 
     def action_pan(self, direction: int) -> None:
@@ -138,7 +135,6 @@ with 0 takes the second away.
         self._look(self._sight and self._sight.panned(direction))
 
     def action_whole(self) -> None:
-        """Show the whole record."""
         self._look(self._sight and self._sight.whole())
 
     def _look(self, sight: Sight | None) -> None:

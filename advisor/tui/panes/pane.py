@@ -79,10 +79,8 @@ class TextPane(Pane):
     """Text of the pane before it has any content."""
 
     def compose(self) -> ComposeResult:
-        """Lay out the text."""
         with VerticalScroll():
             yield HangingLines(self.EMPTY)
 
     def write(self, rows: Iterable[Labelled]) -> None:
-        """Write the rows of the text."""
         self.query_one(HangingLines).write_rows(rows)

@@ -45,7 +45,6 @@ class ReplayBar(Part, Lines):
         self.write(f"{before}{place}  {100.0 * share:3.0f} %  at {_now(view)}{jump}")
 
     def on_click(self, event: Click) -> None:
-        """Report the clicked position on the bar."""
         column = event.x - self.styles.padding.left - self._begins
         if 0 <= column < _WIDTH:
             self.post_message(self.Sought(column / _WIDTH * self._duration_s))

@@ -139,7 +139,6 @@ lacks. A wave means a mode that the model misses. Intervals allow for coloured r
             self.query_one(f"#white-{name}").display = name in shown
 
     def rows(self) -> TableRows | None:
-        """Return one row for each output and lag."""
         if not self._fits:
             return None
         rows = []

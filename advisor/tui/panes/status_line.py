@@ -66,7 +66,6 @@ class KeysLine(Redrawn, Static):
         self._until: Timer | None = None
 
     def on_mount(self) -> None:
-        """Follow the focus."""
         self.screen.bindings_updated_signal.subscribe(self, self._follow)
 
     def has_room_for(self, text: str) -> bool:

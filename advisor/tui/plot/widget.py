@@ -42,7 +42,6 @@ class Plot(Widget):
 
     @property
     def chart(self) -> Chart:
-        """Chart that the widget shows."""
         return self._chart
 
     @chart.setter
@@ -73,7 +72,6 @@ class Plot(Widget):
             self._point(event.x)
 
     def on_mouse_up(self, event: MouseUp) -> None:
-        """Stop following the mouse."""
         self.release_mouse()
 
     def on_mouse_scroll_up(self, event: MouseScrollUp) -> None:
@@ -96,7 +94,6 @@ class Plot(Widget):
             self.post_message(self.Wheeled(x, up, event.shift))
 
     def render_line(self, y: int) -> Strip:
-        """Return one line of the painted chart."""
         strips = self._painted().strips
         return strips[y] if y < len(strips) else Strip.blank(self.size.width, self.rich_style)
 

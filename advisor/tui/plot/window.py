@@ -25,7 +25,6 @@ class Window:
 
     @classmethod
     def whole(cls, first: float, last: float) -> "Window":
-        """Show the whole range."""
         return cls(first, last, first, last)
 
     @property

@@ -126,7 +126,6 @@ class PaneTabs(Redrawn, Static):
         self._chosen = 0
 
     def choose(self, number: int) -> None:
-        """Mark one pane."""
         self._chosen = number
         self._redraw()
 

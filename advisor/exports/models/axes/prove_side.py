@@ -145,5 +145,4 @@ def _gap(maneuver: Maneuver, model: AxisEstimate, aircraft: Aircraft, theta: Flo
 
 
 def _flown(answer: _Answer | NoEstimate) -> _Answer:
-    """Return an estimate, or refuse manoeuvres that give none."""
     return answered(answer, "Fly aileron and rudder in both parts of the flight.", "--prove: ")

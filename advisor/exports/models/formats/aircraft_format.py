@@ -14,7 +14,6 @@ class AircraftFormat(ModelFormat):
     needs_a_finding = True
 
     def made(self, model: FlownModel, file: Path) -> Exported:
-        """Return the file."""
         return Exported(file_text(model), model.beyond_keys)
 
 

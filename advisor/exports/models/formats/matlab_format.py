@@ -32,7 +32,6 @@ class MatlabFormat(ModelFormat):
     suffix = ".m"
 
     def made(self, model: FlownModel, file: Path) -> Exported:
-        """Return the script."""
         return both_axes_text(model)
 
 

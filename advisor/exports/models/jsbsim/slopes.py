@@ -119,7 +119,6 @@ def measured(fdm: Any, asked: Request) -> Slopes:
     fdm.suspend_integration()
 
     def respond(alpha: float, q: float, command: float) -> tuple[Any, Any]:
-        """Return the resulting variables, with α̇ and q̇."""
         fdm["ic/alpha-rad"], fdm["ic/q-rad_sec"] = alpha, q
         fdm["fcs/elevator-cmd-norm"] = command
         _settle(fdm)

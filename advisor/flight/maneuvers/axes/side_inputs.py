@@ -65,7 +65,6 @@ class SideInput:
 
     @property
     def main(self) -> SideMovement:
-        """Movement with the largest amplitude."""
         return self.movements[0]
 
     @property

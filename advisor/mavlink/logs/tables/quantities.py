@@ -64,7 +64,6 @@ def _one_group(table: Mapping[str, FloatArray]) -> Mapping[str, FloatArray]:
 
 
 def _factor(key: str, column: str, columns: TableColumns) -> float:
-    """Return the factor from a column to SI."""
     is_angle = key in ANGLES or key in RATES
     stated = float(np.radians(1.0)) if is_angle and columns.units == "deg" else 1.0
     if key in columns.scale:
