@@ -10,9 +10,8 @@ from pathlib import Path
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft_file.read import load_aircraft
-from advisor.analysis.gap import compare_logs
+from advisor.analysis.gap import as_in_tables, compare_logs
 from advisor.analysis.marks_file import read_by_hand
-from advisor.analysis.table_log import as_in_tables
 from advisor.analysis.whole_flights import read_whole
 from advisor.campaign.state import CampaignState
 from advisor.flight.maneuvers.events import ManeuverFlown

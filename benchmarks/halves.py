@@ -16,8 +16,7 @@ import click
 from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft_file.read import load_aircraft
 from advisor.analysis.gap import compare_flown, opened_simulator
-from advisor.analysis.gap_flights import GapFlights, maneuvers_of
-from advisor.analysis.refused import without_refused
+from advisor.analysis.gap_flights import GapFlights, maneuvers_of, without_refused
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.gap.result import Diagnosis
 from advisor.words.problems import ConfigurationError, UnusableInputError

@@ -27,7 +27,7 @@ from advisor.campaign import joint_estimate, single_maneuver
 from advisor.campaign.axes import lateral_campaign
 from advisor.cli import analyze, page_content
 from advisor.cli.axes import lateral_gap
-from advisor.doctor import as_flown
+from advisor.doctor import expectation
 from advisor.exports.models.jsbsim import run as jsbsim_run
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.oem.axis.estimator import JointSearch
@@ -90,7 +90,7 @@ def record_estimates(patch: pytest.MonkeyPatch) -> None:
     """Let campaigns, the doctor and exports read estimates and slopes that another test of this run made."""
     for module, name in ((single_maneuver, "estimate"), (lateral_campaign, "estimate_axis")):
         patch.setattr(module, name, _estimated_once(getattr(module, name)))
-    patch.setattr(as_flown, "estimate_jointly", _estimated_once(as_flown.estimate_jointly))
+    patch.setattr(expectation, "estimate_jointly", _estimated_once(expectation.estimate_jointly))
     slopes = jsbsim_run._answered
     patch.setattr(jsbsim_run, "_answered", lambda *asked: _made_once(asked, partial(slopes, *asked)))
     patch.setattr(joint_estimate, "fit_jointly", partial(_fitted_once, joint_estimate.fit_jointly))

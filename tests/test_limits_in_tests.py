@@ -19,7 +19,7 @@ ALLOWED = {
     "advisor.model.outputs": "width of an array",
     "advisor.model.transition": "width of an array",
     "advisor.oem.gauss_newton": "names of the ends of a search",
-    "advisor.tui.plot.canvas": "a character",
+    "advisor.tui.plot.painting": "a character",
 }
 """Modules whose numbers are no limits, and what they are."""
 UNCHECKED = tuple(

@@ -7,7 +7,7 @@ import pytest
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft_file.read import load_aircraft
-from advisor.analysis.table_log import as_in_tables
+from advisor.analysis.gap import as_in_tables
 from benchmarks.lateral_gap import scenario_of
 from sim.lateral import lateral_flight
 from sim.record import record

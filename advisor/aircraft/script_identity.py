@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import Self
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.words.printable import printable
+from advisor.words.ascii_output import printable
 
 _LETTERS = 20
 """Longest name, with which the text ``ADVISOR SCRIPT name hash`` has less than 50 bytes."""

@@ -1,4 +1,4 @@
-"""Check of the structure of the estimated model: held parameters and more terms."""
+"""Checks of the sections ``estimation`` and ``effects`` of an aircraft file."""
 
 import math
 from collections.abc import Iterator, Mapping, Sequence

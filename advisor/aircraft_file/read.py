@@ -18,7 +18,7 @@ from advisor.aircraft.reference import PARAMETERS, SIDE_PARAMETERS, FmuVariables
 from advisor.aircraft_file.estimation import effects_schema, mistakes_in, mistakes_in_estimation
 from advisor.process.settings_file import settings_of, strict
 from advisor.process.yaml_file import read_yaml
-from advisor.words.printable import printable
+from advisor.words.ascii_output import printable
 
 
 def load_aircraft(path: Path | None) -> Aircraft:

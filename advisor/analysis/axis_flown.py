@@ -6,8 +6,7 @@ from typing import NamedTuple
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.analysis.axes.side_comparison import accepted_of
-from advisor.analysis.gap_flights import GapFlights, maneuvers_of
-from advisor.analysis.refused import without_refused
+from advisor.analysis.gap_flights import GapFlights, maneuvers_of, without_refused
 from advisor.analysis.whole_flights import Axis, read_whole
 from advisor.campaign.hand_decisions import ByHand
 from advisor.campaign.state import CampaignState

@@ -15,7 +15,7 @@ from advisor.aircraft.aircraft import TableColumns
 from advisor.analysis.marks_file import read_by_hand
 from advisor.campaign.hand_decisions import ByHand, on_all
 from advisor.flight.signals.messages import Columns
-from advisor.words.printable import printable
+from advisor.words.ascii_output import printable
 from advisor.words.problems import Problem, UnusableInputError
 
 T = TypeVar("T")

@@ -16,8 +16,8 @@ from advisor.campaign.hand_decisions import ByHand, Remark
 from advisor.flight.maneuvers.marks import LONGEST_S, Mark
 from advisor.process.atomic_file import write_atomically
 from advisor.process.settings_file import must, read_settings, strict
-from advisor.words.printable import printable
-from advisor.words.vehicle_time import stretch
+from advisor.words.ascii_output import printable
+from advisor.words.digits import stretch
 
 SUFFIX = ".maneuvers.yaml"
 _TEXT_KEYS = {"excluded": "because", "notes": "text", "remarks": "text"}

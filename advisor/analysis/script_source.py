@@ -13,7 +13,7 @@ from advisor.campaign.state import CampaignState, JudgedManeuver
 from advisor.flight.vehicle.surfaces import Surface
 from advisor.scripts.inputs import CONTROLS, Control
 from advisor.scripts.table import Source
-from advisor.words.printable import printable
+from advisor.words.ascii_output import printable
 from advisor.words.problems import UnusableInputError
 
 OF_FILE = "the aircraft file's model"

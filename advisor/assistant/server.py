@@ -4,18 +4,75 @@ import json
 from collections.abc import Awaitable, Callable, Sequence
 from functools import wraps
 from pathlib import Path
+from subprocess import DEVNULL
 from tempfile import TemporaryDirectory
 from typing import Any
 
+from anyio import CapacityLimiter, fail_after, run_process
 from mcp.server import MCPServer
 from mcp.server.mcpserver.exceptions import ToolError
 from mcp.types import ToolAnnotations
 
 from advisor import __version__
 from advisor.aircraft_file.read import load_aircraft
-from advisor.assistant.calls import Calls
 from advisor.assistant.folders import Folders, RefusedError
+from advisor.process.children import python_module
 from advisor.words.problems import ConfigurationError
+
+
+class Calls:
+    """Runs the advisor's commands, one at a time.
+
+    Parameters
+    ----------
+    limit_s
+        Time after which a command is ended, s.
+    """
+
+    def __init__(self, limit_s: float) -> None:
+        self._limit_s = limit_s
+        self._one = CapacityLimiter(1)
+
+    async def document(self, arguments: Sequence[str]) -> dict[str, Any]:
+        """Return the document that a command prints with ``--json``, for an unusable log too.
+
+        Raises
+        ------
+        RefusedError
+            The command fails, takes too long, or prints too much.
+        """
+        code, printed, said = await self._run([*arguments, "--json"])
+        if not printed:
+            raise RefusedError(said or f"advisor {arguments[0]} ended with exit code {code}.")
+        document: dict[str, Any] = json.loads(printed)
+        return document
+
+    async def done(self, arguments: Sequence[str]) -> None:
+        """Run a command that writes a file.
+
+        Raises
+        ------
+        RefusedError
+            The advisor's command fails or takes too long.
+        """
+        code, _, said = await self._run(arguments)
+        if code:
+            raise RefusedError(said or f"advisor {arguments[0]} ended with exit code {code}.")
+
+    async def _run(self, arguments: Sequence[str]) -> tuple[int, bytes, str]:
+        """Return exit code, standard output and the last line on standard error of a command."""
+        words = [*python_module("advisor"), *arguments]
+        try:
+            async with self._one:
+                with fail_after(self._limit_s):
+                    done = await run_process(words, stdin=DEVNULL, check=False)
+        except TimeoutError:
+            limit = f"{self._limit_s:.0f} s"
+            raise RefusedError(f"advisor {arguments[0]} was ended after {limit}, the limit here.") from None
+        # Progress and warnings come first, the sentence on the failure last.
+        said = done.stderr.decode(errors="replace").strip().rpartition("\n")[2]
+        return done.returncode, done.stdout, said
+
 
 MOST_BYTES = 20_000
 """Longest answer as sent, bytes: some 7,000 tokens, a small share of an assistant's context."""

@@ -15,12 +15,19 @@ from advisor import __version__
 from advisor.aircraft.reference import PARAMETERS
 from advisor.analysis.log_series import SINCE_1970_S
 from advisor.batch.flight import Analyzed
-from advisor.batch.tables import aircraft_of, changes_of, estimates_of, names_of, not_told_apart
-from advisor.batch.trend import ChangeOverFlights, lying_apart
+from advisor.batch.tables import (
+    ChangeOverFlights,
+    aircraft_of,
+    changes_of,
+    estimates_of,
+    lying_apart,
+    names_of,
+    not_told_apart,
+)
 from advisor.decision.pooling import DERIVATIVES, common_airspeed, posteriors_at_one_speed
 from advisor.oem.estimate import Estimate
+from advisor.words.ascii_output import printable
 from advisor.words.digits import signed, with_half
-from advisor.words.printable import printable
 from advisor.words.quantiles import NORMAL_95
 from advisor.words.quantities import PARAMETERS as QUANTITIES
 from advisor.words.quantities import symbol

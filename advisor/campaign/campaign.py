@@ -43,8 +43,8 @@ from advisor.oem.estimate import Estimate, NoEstimate
 from advisor.process.aside import Aside
 from advisor.process.parts import Parts
 from advisor.words.axes import AxisName
+from advisor.words.digits import clock
 from advisor.words.problems import Problem
-from advisor.words.vehicle_time import clock
 
 _TEST_OF: Mapping[AxisName, str] = {"pitch": "", "lateral": "roll and yaw: "}
 """Words before the decision on a test, by the name of its axis."""

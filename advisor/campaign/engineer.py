@@ -10,7 +10,7 @@ from advisor.campaign.journal import Journal
 from advisor.flight.maneuvers.events import Notice
 from advisor.flight.stream.flights import Flights
 from advisor.words.axes import AxisName
-from advisor.words.vehicle_time import clock
+from advisor.words.digits import clock
 
 OF: Mapping[AxisName, str] = {"pitch": "", "lateral": "roll and yaw, "}
 """Words before the number of a manoeuvre, by the name of its axis."""

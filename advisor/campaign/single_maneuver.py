@@ -3,9 +3,8 @@
 import math
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.decision.air_speed import is_speed_carried
 from advisor.decision.axes.requirements import judge
-from advisor.decision.envelope import with_gap
+from advisor.decision.envelope import is_speed_carried, with_gap
 from advisor.decision.first_unit import natural_period
 from advisor.decision.history import CandidateManeuver
 from advisor.decision.verdict import Reason

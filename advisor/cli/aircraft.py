@@ -13,7 +13,7 @@ import click
 from advisor.aircraft.aircraft import Aircraft
 from advisor.cli.options import json_option, read_aircraft, refuse_unwritable, target_system_option
 from advisor.process.first_run import compile_once
-from advisor.words.printable import printable
+from advisor.words.ascii_output import printable
 from advisor.words.problems import ConfigurationError
 
 if TYPE_CHECKING:
@@ -61,9 +61,8 @@ def new(log: Path | None, out: Path, blank: bool, force: bool, target_system: in
       advisor aircraft new
       advisor aircraft new --from flight.tlog -o my-aircraft.yaml
     """
-    from advisor.aircraft_file.proposal import proposed
+    from advisor.aircraft_file.proposal import Draft, aircraft_text, proposed
     from advisor.aircraft_file.read import load_aircraft
-    from advisor.aircraft_file.text import Draft, aircraft_text
     from advisor.cli.asking import ask
     from advisor.doctor.next_steps import USUAL_LINK
     from advisor.process.atomic_file import write_atomically

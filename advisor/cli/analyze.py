@@ -12,8 +12,8 @@ from advisor.cli.doctor import examine_log
 from advisor.cli.improvement_export import export_option, orders_of, write_exports
 from advisor.cli.log_options import LogsAsked, log_options
 from advisor.cli.options import UNUSABLE, USAGE, json_option
-from advisor.cli.stages import Stages
-from advisor.words.printable import printable
+from advisor.cli.running import Stages
+from advisor.words.ascii_output import printable
 from advisor.words.problems import Problem
 
 if TYPE_CHECKING:

@@ -15,7 +15,7 @@ from advisor.cli.log_options import LogsAsked
 from advisor.cli.options import UNUSABLE, aircraft_option, read_aircraft, refuse_unwritable_folder, writing
 from advisor.cli.report import refuse_missing_libraries
 from advisor.cli.running import Progress, runner_of, running_options
-from advisor.words.printable import printable
+from advisor.words.ascii_output import printable
 from advisor.words.problems import ConfigurationError, Problem, UnusableInputError
 
 if TYPE_CHECKING:
@@ -83,8 +83,7 @@ def command(
     refuse_unwritable_folder("-o", out)
     if with_reports:
         refuse_missing_libraries("advisor batch --reports")
-    from advisor.batch.flight import analyze, analyze_shared
-    from advisor.batch.logs import find_logs
+    from advisor.batch.flight import analyze, analyze_shared, find_logs
 
     runner = runner_of(workers, scheduler)
     run = partial(runner, analyze if scheduler is None else analyze_shared)
@@ -102,8 +101,7 @@ def _tasks(
     logs: Sequence[Path], aircraft_file: Path | None, map_file: Path | None
 ) -> "tuple[list[BatchTask], dict[Path, Analyzed]]":
     """Return the logs to analyze without repetitions, and the results of logs that cannot be analyzed."""
-    from advisor.batch.flight import BatchTask, failed, sha256_of
-    from advisor.batch.logs import read_map
+    from advisor.batch.flight import BatchTask, failed, read_map, sha256_of
 
     chosen = read_map(map_file) if map_file is not None else None
     described: dict[Path | None, Aircraft] = {}
@@ -175,8 +173,7 @@ def _told(results: "Sequence[Analyzed]", out: Path, pages: Mapping[Path, str]) -
     """Write the tables, and print failures and changes."""
     from advisor.batch.index import index_page
     from advisor.batch.tables import changes_of, in_order, mixed_up, not_told_apart, tables_of
-    from advisor.exports.flights.formats import write_formats
-    from advisor.exports.flights.staging import staged
+    from advisor.exports.flights.formats import staged, write_formats
 
     flights = in_order(results)
     form = "parquet" if find_spec("pyarrow") else "csv"

@@ -12,7 +12,7 @@ from click.shell_completion import CompletionItem
 from advisor.aircraft.aircraft import Aircraft
 from advisor.cli.log_options import LogsAsked, log_options
 from advisor.cli.options import UNUSABLE, json_option
-from advisor.words.printable import printable
+from advisor.words.ascii_output import printable
 from advisor.words.problems import Problem, UnusableInputError
 
 if TYPE_CHECKING:
@@ -50,7 +50,7 @@ def command(asked: LogsAsked, target: str, seconds: float, request_rates: bool, 
     findings, problem = None, None
     try:
         if _is_log(target):
-            from advisor.analysis.table_log import as_in_tables
+            from advisor.analysis.gap import as_in_tables
 
             log = Path(target)
             findings = examine_log(log, as_in_tables(aircraft, [log]), asked.target_system)

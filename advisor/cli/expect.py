@@ -9,8 +9,8 @@ import click
 
 from advisor.cli.log_options import LogsAsked, log_options
 from advisor.cli.options import UNMET, UNUSABLE, json_option, refuse_unwritable, writing
-from advisor.cli.stages import Stages
-from advisor.words.printable import printable
+from advisor.cli.running import Stages
+from advisor.words.ascii_output import printable
 from advisor.words.problems import ConfigurationError, Problem, UnusableInputError
 
 if TYPE_CHECKING:
@@ -50,8 +50,8 @@ def command(asked: LogsAsked, log: Path, file: Path, junit: Path | None, write: 
     aircraft = asked.read_aircraft()
     if write:
         return _write(asked, aircraft, file)
-    from advisor.expectations.document import expect_document
-    from advisor.expectations.document import junit as junit_report
+    from advisor.expectations.check import expect_document
+    from advisor.expectations.check import junit as junit_report
     from advisor.expectations.read import read_expectations
 
     expected = read_expectations(file, aircraft)

@@ -6,11 +6,10 @@ import click
 
 from advisor.cli.log_options import LogsAsked, log_options
 from advisor.cli.options import refuse_unwritable_folder
-from advisor.cli.stages import Stages
-from advisor.exports.flights.formats import WRITERS, parse_formats, write_formats
-from advisor.exports.flights.staging import staged
+from advisor.cli.running import Stages
+from advisor.exports.flights.formats import WRITERS, parse_formats, staged, write_formats
 from advisor.exports.models.names import NAMES
-from advisor.words.printable import printable
+from advisor.words.ascii_output import printable
 
 
 @click.command

@@ -13,7 +13,7 @@ from advisor.cli.improvement_export import export_option, orders_of
 from advisor.cli.log_options import LogsAsked, log_options
 from advisor.cli.options import decided_on, json_option, refuse_unwritable
 from advisor.cli.proving import prove_option, refuse_proving
-from advisor.cli.stages import Stages
+from advisor.cli.running import Stages
 from advisor.words.problems import ConfigurationError
 
 if TYPE_CHECKING:

@@ -17,7 +17,7 @@ from advisor.exports.models.write import ExportOrder
 from advisor.gap.inference.prior import FieldPrior
 from advisor.process.parts import FailedPart, attempt
 from advisor.report.gap_document import gap_document
-from advisor.words.printable import printable
+from advisor.words.ascii_output import printable
 from advisor.words.problems import ConfigurationError, UnusableInputError
 
 Found = TypeVar("Found")

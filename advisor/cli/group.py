@@ -18,8 +18,7 @@ from advisor.cli.options import INTERNAL, UNUSABLE, USAGE
 from advisor.process.first_run import compile_once
 from advisor.process.interrupt import STOPPED, Interrupted
 from advisor.process.tasks.threads import pin_linear_algebra
-from advisor.words.ascii_output import speak_plainly
-from advisor.words.printable import printable
+from advisor.words.ascii_output import printable, speak_plainly
 from advisor.words.problems import ConfigurationError, UnusableInputError
 
 COMMANDS = {

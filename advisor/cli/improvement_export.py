@@ -8,7 +8,7 @@ import click
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.cli.options import refuse_unwritable
-from advisor.words.printable import printable
+from advisor.words.ascii_output import printable
 from advisor.words.problems import ConfigurationError
 
 if TYPE_CHECKING:

@@ -12,7 +12,7 @@ from advisor.cli.log_options import LogsAsked, log_options
 from advisor.cli.options import NEWEST
 from advisor.cli.screen import Show, advise, headless
 from advisor.process.interrupt import STOPPED, in_order
-from advisor.words.printable import printable
+from advisor.words.ascii_output import printable
 from advisor.words.problems import ConfigurationError
 
 if TYPE_CHECKING:
@@ -188,13 +188,13 @@ def _tell(link: "KeptLink", announce: bool, uplink: bool, event: object) -> None
     from advisor.campaign.campaign import ManeuverJudged
 
     if uplink and isinstance(event, InputEnough):
-        from advisor.scripts.next_order import end_order
+        from advisor.scripts.table import end_order
 
         link.advise(*end_order(event.number))
     if not isinstance(event, ManeuverJudged):
         return
     if uplink:
-        from advisor.scripts.next_order import next_order
+        from advisor.scripts.table import next_order
 
         test, plan = event.flight_test, event.plan
         advised, is_open = (

@@ -86,7 +86,7 @@ class LogsAsked:
             aircraft = replace(aircraft, estimation=structure)
         if not self.logs:
             return aircraft
-        from advisor.analysis.table_log import as_in_tables
+        from advisor.analysis.gap import as_in_tables
 
         return as_in_tables(aircraft, self.logs)
 

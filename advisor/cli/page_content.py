@@ -14,9 +14,8 @@ from pathlib import Path
 from advisor import __version__
 from advisor.aircraft.aircraft import Aircraft
 from advisor.analysis.axes.side_comparison import compare_side_flown
-from advisor.analysis.field_sums import FieldSum
 from advisor.analysis.log_series import SINCE_1970_S, began_s
-from advisor.analysis.vibration import Vibration, vibration_of
+from advisor.analysis.vibration import FieldSum, Vibration, vibration_of
 from advisor.analysis.whole_flights import WholeFlights, holds_no_test, read_whole
 from advisor.cli.doctor import examine_log
 from advisor.cli.log_options import LogsAsked
@@ -24,9 +23,9 @@ from advisor.doctor.document import doctor_document
 from advisor.exports.flights.reading import sha256
 from advisor.gap.inference.engine import Progress
 from advisor.report.document import analysis_document
-from advisor.report.page.content import Content, Document, Origin
+from advisor.report.page.blocks import Content, Document, Origin
 from advisor.session.diagnosis import diagnosed, document_of
-from advisor.words.printable import printable
+from advisor.words.ascii_output import printable
 from advisor.words.problems import UnusableInputError
 
 _COUNTED = ("numpy", "scipy", "matplotlib", "jinja2", "pymavlink")

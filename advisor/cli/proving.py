@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from advisor.cli.stages import Stages
-from advisor.words.printable import printable
+from advisor.cli.running import Stages
+from advisor.words.ascii_output import printable
 from advisor.words.problems import ConfigurationError, UnusableInputError
 
 if TYPE_CHECKING:

@@ -7,7 +7,7 @@ import click
 
 from advisor.cli.log_options import LogsAsked, log_options
 from advisor.cli.screen import Show, advise
-from advisor.words.printable import printable
+from advisor.words.ascii_output import printable
 
 
 def _speed(ctx: click.Context, parameter: click.Parameter, text: str) -> float:

@@ -8,8 +8,8 @@ import click
 
 from advisor.cli.log_options import LogsAsked, log_options
 from advisor.cli.options import UNUSABLE, refuse_unwritable, writing
-from advisor.cli.stages import Stages
-from advisor.words.printable import printable
+from advisor.cli.running import Stages
+from advisor.words.ascii_output import printable
 from advisor.words.problems import ConfigurationError
 
 _NEEDED = ("jinja2", "matplotlib")
@@ -47,7 +47,7 @@ def command(asked: LogsAsked, out: Path, form: str | None, names: tuple[str, ...
     """
     _refuse(asked.inputs, out)
     aircraft = asked.read_aircraft()
-    from advisor.analysis.field_sums import field_sums
+    from advisor.analysis.vibration import field_sums
     from advisor.cli.page_content import gather
     from advisor.process.atomic_file import write_atomically
     from advisor.report.page.render import page

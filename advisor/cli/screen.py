@@ -13,7 +13,7 @@ import click
 from advisor.aircraft.aircraft import Aircraft
 from advisor.process.interrupt import in_order
 from advisor.session.source import Source, Tempo
-from advisor.words.printable import printable
+from advisor.words.ascii_output import printable
 from advisor.words.problems import UnusableInputError
 
 if TYPE_CHECKING:
@@ -156,8 +156,8 @@ def so_far(state: "CampaignState") -> Iterator[str]:
     """Yield each verdict so far and stop or continue, after the user left. An axis without a verdict yields
     nothing.
     """
-    from advisor.report.facts.decision import decisions
-    from advisor.report.result_rows import SIDE_ROOM, maneuver_line
+    from advisor.report.facts.answers import decisions
+    from advisor.report.table import SIDE_ROOM, maneuver_line
 
     lateral = state.lateral is not None and state.lateral.maneuvers
     yield from map(maneuver_line, state.maneuvers)

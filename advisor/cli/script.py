@@ -16,7 +16,7 @@ from advisor.cli.options import (
     target_system_option,
     writing,
 )
-from advisor.words.printable import printable
+from advisor.words.ascii_output import printable
 from advisor.words.problems import ConfigurationError, UnusableInputError
 
 if TYPE_CHECKING:
@@ -116,8 +116,7 @@ def command(
     from advisor.process.atomic_file import write_atomically
     from advisor.scripts.ardupilot import ardupilot_script
     from advisor.scripts.document import script_document
-    from advisor.scripts.flight_limits import FlightLimits
-    from advisor.scripts.table import script_table
+    from advisor.scripts.table import FlightLimits, script_table
 
     refuse_unwritable("-o", out)
     aircraft = read_aircraft(aircraft_file)

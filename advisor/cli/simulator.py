@@ -8,7 +8,7 @@ import click
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.cli.options import aircraft_option, json_option, read_aircraft
-from advisor.words.printable import printable
+from advisor.words.ascii_output import printable
 from advisor.words.problems import ConfigurationError
 
 

@@ -15,11 +15,11 @@ from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, replace
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.decision.air_speed import leaping_speed
 from advisor.decision.envelope import (
     above,
     changed_speed,
     incomplete,
+    leaping_speed,
     leapt,
     moved_at_once,
     not_heard,

@@ -8,9 +8,8 @@ from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft_file.log_facts import FLYING_SHARE, SLOWEST_M_S
 from advisor.campaign.instruments import together
 from advisor.decision.first_unit import frequency
-from advisor.doctor.as_flown import assumed_of
 from advisor.doctor.examination import AlphaFound, ElevatorFound, Examination, Limit, in_order
-from advisor.doctor.expectation import Assumed, at_log_rates, expect
+from advisor.doctor.expectation import Assumed, assumed_of, at_log_rates, expect
 from advisor.doctor.limits import (
     alpha_limits,
     clock_limits,

@@ -12,7 +12,7 @@ from advisor.flight.signals.clocks import BootClock
 from advisor.flight.signals.messages import Columns, cut
 from advisor.flight.vehicle.vehicle import Vehicle
 from advisor.process.arrays import FloatArray
-from advisor.words.vehicle_time import stretch
+from advisor.words.digits import stretch
 
 # The field whose change shows that a message brings a new value.
 _TELLING = {

@@ -10,9 +10,9 @@ from advisor.aircraft.reference import PARAMETERS
 from advisor.decision.first_unit import frequency
 from advisor.doctor.examination import Examination, Limit
 from advisor.doctor.limits import STRAYED_SHARE
-from advisor.report.result_rows import message_table
+from advisor.report.table import message_table
+from advisor.words.ascii_output import printable
 from advisor.words.plain import plain
-from advisor.words.printable import printable
 from advisor.words.quantiles import NORMAL_95
 from advisor.words.quantities import PARAMETERS as QUANTITIES
 

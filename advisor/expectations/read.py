@@ -10,8 +10,7 @@ from pydantic import BeforeValidator
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft.reference import PARAMETERS, SIDE_PARAMETERS
-from advisor.expectations.expected import MODES, SECTIONS, Expectations, Near
-from advisor.expectations.modes import lacking
+from advisor.expectations.expected import MODES, SECTIONS, Expectations, Near, lacking
 from advisor.gap.simulator.layout import DERIVATIVES
 from advisor.model.mil_f_8785c import CATEGORIES, Category
 from advisor.process.settings_file import must, read_settings, resembling, strict

@@ -7,7 +7,7 @@ from typing import Any
 
 import yaml
 
-from advisor.words.printable import printable
+from advisor.words.ascii_output import printable
 from advisor.words.problems import ConfigurationError
 
 _MOST_BYTES = 256 * 1024

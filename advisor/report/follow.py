@@ -17,9 +17,9 @@ from advisor.flight.maneuvers.events import (
     VehicleFound,
 )
 from advisor.flight.signals.messages import Columns
-from advisor.report.facts.decision import next_line, stop_line
-from advisor.report.result_rows import SIDE_ROOM, maneuver_line
-from advisor.words.vehicle_time import CLOCK, clock
+from advisor.report.facts.answers import next_line, stop_line
+from advisor.report.table import SIDE_ROOM, maneuver_line
+from advisor.words.digits import CLOCK, clock
 
 
 def follow(

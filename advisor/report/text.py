@@ -14,18 +14,17 @@ from advisor.decision.verdict import FlightTestVerdict
 from advisor.flight.maneuvers.events import Activity
 from advisor.flight.signals.instrument_finding import InstrumentFinding
 from advisor.report.axes.lateral_document import side_quality_lines
-from advisor.report.facts.decision import INDENT, WARNING, decisions
+from advisor.report.facts.answers import INDENT, WARNING, decisions
 from advisor.report.facts.estimates import structure_lines, untold
 from advisor.report.qualities import coefficients_of, qualities_of, quality_lines
-from advisor.report.result_rows import (
+from advisor.report.table import (
     ROOM,
     SIDE_ROOM,
     channel_table,
     joint_table,
     maneuver_line,
 )
-from advisor.words.digits import counted
-from advisor.words.vehicle_time import CLOCK, clock
+from advisor.words.digits import CLOCK, clock, counted
 
 
 def activity_line(activity: Activity) -> str:

@@ -11,8 +11,7 @@ from typing import Any
 
 from advisor.decision.conditions import ALPHA_MARGIN, FULL_TRAVEL_RAD
 from advisor.scripts.inputs import CONTROLS, NAMES, Control
-from advisor.scripts.outputs import StatedOutput, factors_by_function
-from advisor.scripts.table import Entry, ScriptTable
+from advisor.scripts.table import Entry, ScriptTable, StatedOutput, factors_by_function
 
 UNIT_S = (0.1, 5.0)
 """Shortest and longest time unit that a script flies by an order, s. A servo cannot follow shorter steps, and

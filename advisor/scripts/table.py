@@ -1,23 +1,115 @@
-"""The table of a script: its inputs with their sizes, for one aircraft."""
+"""The table of a script: its inputs with their sizes, for one aircraft.
+
+The rows of ``mixers.py`` read a control from the outputs' pulses. The forward mixer of a script is the
+inverse. One degree of a control moves each output by its factor and leaves every other control unchanged.
+"""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from math import inf, radians
+from math import degrees, inf, radians
 
 import numpy as np
 
 from advisor.aircraft.aircraft import Aircraft
+from advisor.aircraft.controls import Pairs
 from advisor.aircraft.reference import SIDE_PARAMETERS
 from advisor.aircraft.script_identity import ScriptIdentity
 from advisor.decision.conditions import ALPHA_MARGIN, LINEAR_RAD, travel_of
 from advisor.decision.held_inputs import held_response
+from advisor.decision.inputs import StepInput
+from advisor.flight.vehicle.mixers import Control as AnyControl
+from advisor.flight.vehicle.mixers import Role, arduplane_roles
 from advisor.model.axes.lateral import Trim, state_matrix
 from advisor.model.short_period import ShortPeriod
 from advisor.process.arrays import FloatArray
-from advisor.scripts.flight_limits import FlightLimits
 from advisor.scripts.inputs import CONTROLS, NAMES, Control, ScriptInput, input_of
-from advisor.scripts.outputs import StatedOutput, stated_outputs
 from advisor.scripts.pace import Pace, pace_of
+
+_ALL: tuple[AnyControl, ...] = (*CONTROLS, "flap")
+_FUNCTIONS = ((4,), (19,), (21,), (24, 25), (77, 78), (79, 80))
+"""Values of SERVOn_FUNCTION that a script moves, in groups that a mixer drives together."""
+
+
+@dataclass(frozen=True, slots=True)
+class StatedOutput:
+    """A servo output that the aircraft file names for a control."""
+
+    output: int
+    factor: float
+    """Degrees of the output for one degree of the control."""
+    calibration: Pairs | None
+
+
+def forward(roles: Mapping[int, Role]) -> dict[int, dict[Control, float]]:
+    """Return degrees of each output for one degree of each control, for outputs of one mixer.
+
+    The factors are the pseudo-inverse of the reading weights, so that reading them back gives the control
+    alone.
+    """
+    outputs = sorted(roles)
+    weights = np.array([[roles[n].weight(control) for n in outputs] for control in _ALL])
+    factors = np.linalg.pinv(weights)
+    return {
+        n: {
+            control: round(float(factors[row, column]), 6)
+            for column, control in enumerate(CONTROLS)
+            if abs(factors[row, column]) > 1e-9
+        }
+        for row, n in enumerate(outputs)
+    }
+
+
+def factors_by_function() -> dict[int, dict[Control, float]]:
+    """Return degrees of an output for one degree of each control, by the output's SERVOn_FUNCTION."""
+    factors: dict[int, dict[Control, float]] = {}
+    for functions in _FUNCTIONS:
+        roles = arduplane_roles(dict(enumerate(functions, 1)), None)
+        factors |= {functions[n - 1]: moves for n, moves in forward(roles).items()}
+    return factors
+
+
+def stated_outputs(aircraft: Aircraft, control: Control) -> tuple[StatedOutput, ...]:
+    """Return the outputs that the aircraft file names for a control; empty where the autopilot's parameters
+    name them.
+    """
+    surface = getattr(aircraft, control)
+    if control == "elevator" and aircraft.elevator.outputs:
+        listed = aircraft.elevator.outputs
+        return tuple(StatedOutput(o.output, float(np.sign(o.weight)), o.calibration) for o in listed)
+    if surface.output == "auto":
+        return ()
+    return (StatedOutput(surface.output, 1.0, surface.calibration),)
+
+
+LOWEST_M = 30.0
+"""Usual height above home below which no input begins and every input ends, m. A pilot needs 2 s to see and
+to recover, in which an aircraft at 30 deg nose down and 20 m/s loses 20 m."""
+
+
+@dataclass(frozen=True, slots=True)
+class FlightLimits:
+    """Limits of a script, each with its unit in the name."""
+
+    bank_deg: float
+    airspeed_percent: float
+    """Largest change of the air speed from its value before the input, %."""
+    lowest_m: float
+    pitch_deg: float = 30.0
+    """Largest change of the pitch angle from its value before the input, deg. At a larger change, the weight
+    along the path accelerates the aircraft by more than a third of g.
+    """
+    stick_percent: float = 10.0
+    """Largest motion of a stick during an input, % of its travel from neutral. A larger motion means that a
+    pilot takes over.
+    """
+    link_s: float = 3.0
+    """Longest silence of the ground station, s. The limit applies if a ground station was heard before."""
+
+    @classmethod
+    def of(cls, aircraft: Aircraft, lowest_m: float = LOWEST_M) -> "FlightLimits":
+        limits = aircraft.limits
+        return cls(limits.bank_deg, limits.airspeed_change_percent, lowest_m)
+
 
 FIRST_SHARE: Mapping[str, float] = {"elevator": 0.08, "aileron": 0.08, "rudder": 0.10}
 """Size of the first input as a fraction of the travel, if neither model nor flight is known. In ArduPlane's
@@ -222,3 +314,26 @@ def script_table(
         {control: stated_outputs(aircraft, control) for control in CONTROLS},
         source.parameters,
     )
+
+
+_NAMES = {
+    ("elevator", True): "3-2-1-1",
+    ("elevator", False): "reverse 3-2-1-1",
+    ("aileron", True): "aileron doublet",
+    ("rudder", True): "rudder doublet",
+}
+"""Name in a script's table, by control and direction of the first step. A script flies the elevator only as
+3-2-1-1, which contains the frequencies of other orders of steps.
+"""
+
+
+def next_order(advised: StepInput) -> tuple[int, float, float]:
+    """Return the number of the input, its size in deg, and its time unit in s."""
+    elevator = advised.control == "elevator"
+    name = _NAMES[advised.control, advised.nose_up_first if elevator else True]
+    return 1 + NAMES.index(name), round(degrees(advised.amplitude_rad), 2), round(advised.unit_s, 2)
+
+
+def end_order(number: int) -> tuple[int, float, float]:
+    """Return the order to end the multisine of this number, with a size that no script would fly."""
+    return 0, -float(number), 0.0

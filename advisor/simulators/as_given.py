@@ -19,9 +19,15 @@ from advisor.gap.simulator.layout import BANK, DERIVATIVES, HEIGHT, INDEX, OUTPU
 from advisor.oem.rows import Signal
 from advisor.process.arrays import FloatArray
 from advisor.simulators.air import refuse_unknown_air, standard_heights, winds
-from advisor.simulators.around import COMMAND, instruments, skewed
 from advisor.simulators.by_log import IdentifiedSimulator
-from advisor.simulators.increments import EQUATIONS, SimulatorIncrements, carried
+from advisor.simulators.increments import (
+    COMMAND,
+    EQUATIONS,
+    SimulatorIncrements,
+    carried,
+    instruments,
+    skewed,
+)
 from advisor.simulators.inputs import as_flight, condition_of, inputs_of, on_grid, other_controls, surface_of
 from advisor.simulators.interface import control_fault, interface_fault
 from advisor.simulators.linear import LinearSimulator

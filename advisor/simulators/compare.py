@@ -28,8 +28,16 @@ from advisor.simulators.linear import LinearSimulator
 from advisor.simulators.mirror import Mirror, said_of_the_simulator
 from advisor.simulators.protocol import Progress, Simulator
 from advisor.simulators.static_errors import with_static_errors
-from advisor.simulators.taken_back import with_unseen_shrink, without_worse
-from advisor.simulators.unseen import Flown, UnseenManeuvers, changes_something, resaid, shrink_on, unseen_of
+from advisor.simulators.unseen import (
+    Flown,
+    UnseenManeuvers,
+    changes_something,
+    resaid,
+    shrink_on,
+    unseen_of,
+    with_unseen_shrink,
+    without_worse,
+)
 from advisor.words.quantities import PARAMETERS
 
 _FLIES, _DIAGNOSED, _FOUND = 0.2, 0.9, 0.95

@@ -12,7 +12,7 @@ from advisor.session.conducting import Conducting
 from advisor.session.source import LinkRequest, Tempo
 from advisor.session.view import View
 from advisor.tui.screens.face import Face
-from advisor.words.vehicle_time import clock
+from advisor.words.digits import clock
 
 LINK_ACTIONS = ("follow_another", "ask_for_outputs", "take_guess")
 REPLAY_ACTIONS = ("pause", "step", "faster", "slower", "jump", "jump_by", "seek_by")

@@ -26,7 +26,7 @@ from advisor.tui import keys
 from advisor.tui.actions import LINK_ACTIONS, REPLAY_ACTIONS, HandActions, LinkActions, ReplayActions
 from advisor.tui.explaining import Explain, commands, explanation
 from advisor.tui.panes.flight import WholeFlightPane
-from advisor.tui.panes.replay_bar import ReplayBar
+from advisor.tui.panes.status_line import ReplayBar
 from advisor.tui.screens.engineer import EngineerScreen
 from advisor.tui.screens.face import Face
 from advisor.tui.screens.pilot import PilotScreen

@@ -51,7 +51,7 @@ def place(
     """
     if find_spec("textual_serve") is None:
         raise ConfigurationError("advisor serve needs textual-serve: pip install 'inflight-advisor[web]'.")
-    from advisor.web.server import listening
+    from advisor.web.site import listening
 
     seen = checked_origin(origin) if origin else None
     here = on_this_computer(host)
@@ -87,10 +87,8 @@ def serve(
         The link can never be used.
     """
     from advisor.tui.settings import load_settings
-    from advisor.web.server import WebServer
-    from advisor.web.showing import Audience, Showing
-    from advisor.web.site import Site
-    from advisor.web.viewing import Viewing
+    from advisor.web.showing import Audience, Showing, Viewing
+    from advisor.web.site import Site, WebServer
 
     viewing = Viewing(aircraft, title, tempo, load_settings(), place.watch_only)
     conductor = partial(RemoteConductor, task)

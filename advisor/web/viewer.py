@@ -26,7 +26,7 @@ from advisor.tui.actions import LINK_ACTIONS
 from advisor.tui.app import AdvisorApp
 from advisor.tui.screens.engineer import EngineerScreen
 from advisor.tui.screens.pilot import PilotScreen
-from advisor.web.viewing import ADDRESS, KEY, Viewing
+from advisor.web.showing import ADDRESS, KEY, Viewing
 
 LOOK_EVERY_S = 0.1
 """Time after which a thread without messages tests whether to stop, s."""

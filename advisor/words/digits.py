@@ -1,8 +1,35 @@
-"""Numbers as text. An interval has two significant digits, and unequal numbers have unequal texts."""
+"""Numbers as text. An interval has two significant digits, and unequal numbers have unequal texts. Vehicle
+time for people has one form everywhere.
+"""
 
 from collections.abc import Sequence
 from math import floor, isfinite, log10
 from typing import Literal
+
+CLOCK = "minutes:seconds since power-on"
+"""Unit and origin of the times that `clock` writes, for headings and help."""
+
+
+def clock(seconds: float) -> str:
+    """Write a time since power-on: ``3:07.5``; ``–`` where the time is not known.
+
+    Minutes continue beyond 60, so that 60 times the minutes plus the seconds is the time in a document.
+
+    Parameters
+    ----------
+    seconds
+        Vehicle time, s since power-on; NaN before the vehicle's clock is heard.
+    """
+    if not isfinite(seconds):
+        return "–"
+    minutes, tenths = divmod(round(abs(seconds) * 10.0), 600)
+    return f"{'-' if seconds < 0.0 and (minutes or tenths) else ''}{minutes}:{tenths / 10.0:04.1f}"
+
+
+def stretch(start_s: float, end_s: float) -> str:
+    """Write a stretch of vehicle time, s since power-on: ``3:07.5 to 3:19.0``."""
+    return f"{clock(start_s)} to {clock(end_s)}"
+
 
 MOST_DIGITS = 9
 """Largest number of decimals or significant digits of a text. Two numbers have equal texts only if nine

@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from advisor.words.printable import printable
+from advisor.words.ascii_output import printable
 
 
 @dataclass(frozen=True)

@@ -20,8 +20,7 @@ from advisor.campaign.campaign import Campaign
 from advisor.campaign.state import JudgedManeuver
 from advisor.cli.options import read_aircraft
 from advisor.mavlink.logs.whole import read_whole_log
-from advisor.scripts.flight_limits import FlightLimits
-from advisor.scripts.table import Source, script_table
+from advisor.scripts.table import FlightLimits, Source, script_table
 
 from .airframes import AIRFRAMES
 from .flight import ScriptFlight, fly_table

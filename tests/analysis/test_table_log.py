@@ -10,8 +10,7 @@ from scipy.io import savemat
 
 from advisor.aircraft.aircraft import Aircraft, TableColumns
 from advisor.aircraft_file.read import parse_aircraft
-from advisor.analysis.gap import named_simulator
-from advisor.analysis.table_log import table_maneuvers
+from advisor.analysis.gap import named_simulator, table_maneuvers
 from advisor.process.arrays import FloatArray
 from advisor.simulators.protocol import Condition, Inputs
 from advisor.words.problems import ConfigurationError, UnusableInputError

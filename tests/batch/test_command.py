@@ -11,8 +11,16 @@ import pytest
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft.reference import PARAMETERS
-from advisor.batch.flight import Analyzed, BatchTask, failed, kept, sha256_of
-from advisor.batch.logs import AircraftMap, find_logs, read_map
+from advisor.batch.flight import (
+    AircraftMap,
+    Analyzed,
+    BatchTask,
+    failed,
+    find_logs,
+    kept,
+    read_map,
+    sha256_of,
+)
 from advisor.batch.tables import aircraft_of, is_whole, mixed_up
 from advisor.cli.batch import write_reports
 from advisor.process.tasks import processes

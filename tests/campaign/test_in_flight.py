@@ -7,6 +7,7 @@ import pytest
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft.controls import Elevator
+from advisor.campaign import journal
 from advisor.campaign.campaign import Campaign
 from advisor.campaign.state import AxisState, CampaignState
 from advisor.mavlink.logs.logs import open_log
@@ -64,3 +65,20 @@ def test_a_test_of_roll_and_yaw_does_not_wait_for_the_response_in_pitch(states):
     sideways = replace(recorded_one, axes={**nothing, "lateral": side.state(side.judged(1, "aileron"))})
     assert sideways.tested_sideways is not None
     assert not sideways.is_recorded
+
+
+def test_an_event_log_forgets_the_oldest_sentences(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(journal, "KEPT", 3)
+    log = journal.Journal()
+    for k in range(5):
+        log.write(str(k))
+    assert [line.split()[-1] for line in log.lines] == ["2", "3", "4"]
+
+
+def test_an_event_log_keeps_its_lines_until_something_is_added() -> None:
+    log = journal.Journal()
+    log.write("heard")
+    lines = log.lines
+    assert log.lines is lines
+    log.write("heard again")
+    assert log.lines is not lines

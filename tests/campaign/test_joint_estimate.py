@@ -10,11 +10,12 @@ import pytest
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft.controls import Elevator
-from advisor.campaign import joint_estimate
+from advisor.campaign import joint_estimate, single_maneuver
 from advisor.campaign.axes import elevator_campaign as elevator
 from advisor.campaign.campaign import Campaign
 from advisor.campaign.joint_estimate import Together
 from advisor.campaign.learning import may_learn
+from advisor.campaign.single_maneuver import assess
 from advisor.campaign.state import CampaignState
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.mavlink.logs.logs import open_log
@@ -22,6 +23,7 @@ from advisor.oem import instrument_fit
 from advisor.oem.estimate import Estimate, NoEstimate
 from advisor.oem.estimator import estimate_jointly, fit_jointly
 from advisor.oem.known_instruments import FoundInstruments, with_found
+from tests.decision.campaigns import estimate
 from tests.flights import FOUR, TWO, recorded
 
 NEWEST = 7
@@ -174,3 +176,19 @@ def test_after_a_group_that_tells_no_lag_the_next_whole_group_is_asked(states, m
 def test_after_a_group_that_tells_a_lag_every_manoeuvre_is_asked_with_its_forerunners(states, monkeypatch):
     asked = asked_for_a_lag(True, NEWEST + 2, states[0].maneuvers[0].maneuver, monkeypatch)
     assert asked[NEWEST:] == [list(range(2, NEWEST + 2)), list(range(3, NEWEST + 3))]
+
+
+@pytest.mark.parametrize(
+    ("found", "moved"),
+    [
+        (estimate(), False),
+        (replace(estimate(), gust_rad=0.01), True),
+        (NoEstimate("diverged", "The model runs away."), False),
+    ],
+    ids=["calm", "gusts", "no estimate"],
+)
+def test_the_air_moved_where_the_estimate_found_gusts(monkeypatch, found, moved):
+    monkeypatch.setattr(single_maneuver, "estimate", lambda *_: found)
+    monkeypatch.setattr(single_maneuver, "judge", lambda *_: ())
+    monkeypatch.setattr(single_maneuver, "cautions_of", lambda *_: [])
+    assert assess(None, Aircraft()).air_moved == moved

@@ -1,12 +1,17 @@
 """What a ground station hears of a flight on both axes: the word of the one plan that the screens show."""
 
+from dataclasses import replace
 from types import SimpleNamespace
 
+import pytest
+
 from advisor.campaign.campaign import ManeuverJudged
-from advisor.cli.live import _announce
+from advisor.cli.live import _announce, _tell
 from advisor.decision.crew_plan import crew_plan
-from advisor.decision.verdict import FlightTestVerdict
+from advisor.decision.inputs import StepInput
+from advisor.decision.verdict import FlightTestVerdict, NextInput
 from advisor.mavlink.link.announce import Announcer
+from tests.tui import flights
 
 OPEN = FlightTestVerdict("information", "continue", "CONTINUE: much is open.", 300.0, 100.0, None)
 COMPLETE = FlightTestVerdict("information", "stop", "TEST COMPLETE: all is known.", 20.0, 100.0, 1)
@@ -49,3 +54,14 @@ def test_roll_and_yaw_that_begin_after_pitch_is_complete_are_heard_as_open():
         "@Pitch is complete, roll and yaw are open. (roll and yaw 1 accepted)",
         "@TEST COMPLETE: Pitch is complete, roll and yaw are complete. (roll and yaw 2 accepted)",
     ]
+
+
+@pytest.mark.parametrize(("decision", "sent"), [("continue", 1), ("stop", 0)])
+def test_an_input_is_sent_only_while_the_test_is_open(decision, sent):
+    state = flights.state(3)
+    advised = NextInput("next: 3-2-1-1", None, "M_q", StepInput("3211", 0.3, 0.05, True))
+    test = replace(state.flight_test, decision=decision, next=advised)
+    orders = []
+    link = SimpleNamespace(advise=lambda *order: orders.append(order))
+    _tell(link, False, True, ManeuverJudged(state.maneuvers[-1], test, None, "pitch", ()))
+    assert len(orders) == sent

@@ -4,7 +4,7 @@ import io
 import sys
 import time
 
-from advisor.cli.stages import Stages
+from advisor.cli.running import Stages
 
 
 class Terminal(io.StringIO):

@@ -8,7 +8,7 @@ from advisor.flight.maneuvers.events import Notice
 from advisor.flight.stream.identity import READER
 from advisor.mavlink.logs.formats.telemetry import read_tlog
 from advisor.process.yaml_file import read_yaml
-from advisor.words.printable import printable
+from advisor.words.ascii_output import printable
 from advisor.words.problems import ConfigurationError, Problem
 from tests.cli.processes import flight
 from tests.conftest import Advisor

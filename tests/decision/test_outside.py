@@ -1,6 +1,7 @@
 """A record that is incomplete or outside the model, each limit on both sides of its number."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -16,6 +17,7 @@ from advisor.decision.envelope import (
     short_response,
     steep,
     throttled,
+    too_quick,
     too_slow,
     with_gap,
 )
@@ -169,3 +171,18 @@ def test_what_was_not_recorded_has_not_moved() -> None:
 def test_an_angle_of_attack_has_the_limit_that_the_crew_gives(deg: float, codes: list[str]) -> None:
     assert told(steep(record(alpha=swing(2.0 * deg)), 12.0)) == codes
     assert told(steep(record(alpha=swing(2.0 * deg)), None)) == []
+
+
+def stepped(*onsets_s, kind="3-2-1-1"):
+    return SimpleNamespace(span=SimpleNamespace(kind=kind, steps=[(onset, 0.1) for onset in onsets_s]))
+
+
+@pytest.mark.parametrize(("step_s", "is_too_short"), [(0.1, True), (0.2, False)])
+def test_a_step_shorter_than_a_seventh_of_the_period_is_too_short(step_s, is_too_short):
+    found = too_quick(stepped(10.0, 11.0, 11.0 + step_s), 1.0)
+    assert [reason.code for reason in found] == (["steps"] if is_too_short else [])
+
+
+def test_a_multisine_and_a_single_step_have_no_shortest_step():
+    assert too_quick(stepped(10.0, 10.01, kind="multisine"), 1.0) == []
+    assert too_quick(stepped(10.0), 1.0) == []

@@ -24,7 +24,7 @@ from advisor.flight.signals.trust import Distrust
 from advisor.flight.vehicle.vehicle import Vehicle
 from advisor.model.short_period import ShortPeriod
 from advisor.words.problems import Problem
-from tests.doctor.test_pace import ASSUMED
+from tests.doctor.test_limits import ASSUMED
 from tests.rows import row
 
 PLANE = Vehicle(1, 1, "ardupilot", 1)

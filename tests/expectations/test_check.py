@@ -7,12 +7,10 @@ from xml.etree import ElementTree
 import pytest
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.expectations.check import check
-from advisor.expectations.document import junit
+from advisor.expectations.check import check, junit
 from advisor.expectations.draft import draft
-from advisor.expectations.expected import Expectations, Near
+from advisor.expectations.expected import Expectations, Near, mode_of
 from advisor.expectations.flown import Flown, Measured
-from advisor.expectations.modes import mode_of
 from advisor.expectations.read import read_expectations
 from advisor.model.axes.lateral import Trim
 from advisor.model.mil_f_8785c import LevelFound

@@ -8,9 +8,9 @@ import pytest
 from advisor.aircraft.aircraft import Aircraft
 from advisor.exports.flights import mat_file, mcap_files
 from advisor.exports.flights.formats import write_formats
-from advisor.exports.models.exported import Exported
 from advisor.exports.models.flown import FlownModel
 from advisor.exports.models.formats import ardupilot_format, matlab_format
+from advisor.exports.models.improvement import Exported
 from advisor.exports.models.write import carry_out, order_of
 
 NO_DATA: Any = None

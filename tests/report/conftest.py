@@ -14,7 +14,7 @@ from advisor.aircraft_file.read import load_aircraft
 from advisor.cli import group as cli
 from advisor.cli.log_options import LogsAsked
 from advisor.cli.page_content import gather
-from advisor.report.page.content import Content
+from advisor.report.page.blocks import Content
 from tests.flights import FOUR, TWO, recorded
 from tests.recorded import use_recorded
 from tests.report.page_reader import Page

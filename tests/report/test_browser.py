@@ -11,7 +11,7 @@ from typing import Any
 
 import pytest
 
-from advisor.report.page.content import Content
+from advisor.report.page.blocks import Content
 from advisor.report.page.render import page
 from tests.campaign.states import changed
 from tests.report.conftest import Reported

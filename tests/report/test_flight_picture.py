@@ -7,7 +7,7 @@ import numpy as np
 
 from advisor.flight.signals.power_on import PowerOn
 from advisor.flight.signals.record import Channel
-from advisor.report.page.flight_picture import flight_picture
+from advisor.report.page.flight_picture import flight_picture, thinned
 from tests.campaign.side_builders import judged, state
 
 NONE = np.empty(0, dtype=np.int64)
@@ -58,3 +58,13 @@ def test_every_channel_is_a_hidden_layer_with_a_choice_of_its_own():
 def test_the_number_of_a_manoeuvre_leads_to_its_row():
     (gallery,) = flight_picture(flown(judged(1, "aileron"))).blocks
     assert '"#lateral-maneuvers-1"' in gallery.figures[0].svg()
+
+
+def test_a_thinned_line_keeps_its_peaks_and_breaks_in_a_gap() -> None:
+    t = np.concatenate([np.arange(0.0, 100.0, 0.02), np.arange(200.0, 300.0, 0.02)])
+    y = np.zeros(len(t))
+    y[1234], y[7777] = 3.0, -2.0
+    thin_t, thin_y = thinned(Channel("q", t, y), 200)
+    assert len(thin_t) < 420
+    assert (np.nanmax(thin_y), np.nanmin(thin_y)) == (3.0, -2.0)
+    assert thin_t[np.flatnonzero(np.isnan(thin_y))] in (99.98, thin_t[thin_t < 150.0].max())

@@ -11,8 +11,7 @@ from advisor.flight.maneuvers.events import ManeuverFlown, SideManeuverFlown
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.flight.stream.stream import FlightStream
 from advisor.scripts.ardupilot import ardupilot_script
-from advisor.scripts.flight_limits import FlightLimits
-from advisor.scripts.table import Source, script_table
+from advisor.scripts.table import FlightLimits, Source, script_table
 from benchmarks.scripted.flight import ScriptFlight, fly_table, level
 from benchmarks.scripted.measured import TELEMETRY_MS, deflections, flown_of
 from benchmarks.scripted.pilot import SITL, SlowMachineError, airborne

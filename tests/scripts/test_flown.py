@@ -14,9 +14,8 @@ from advisor.flight.elevator.elevator_outputs import find_elevator
 from advisor.flight.vehicle.ardupilot_wiring import ardupilot_wiring
 from advisor.flight.vehicle.surfaces import Surface
 from advisor.scripts.ardupilot import ardupilot_script
-from advisor.scripts.flight_limits import FlightLimits
 from advisor.scripts.inputs import CONTROLS, NAMES, STEPPED
-from advisor.scripts.table import ScriptTable, Source, script_table
+from advisor.scripts.table import FlightLimits, ScriptTable, Source, script_table
 from tests.scripts.engine import BUDGET, USUAL, Engine
 
 STEADY_S, BOUNCE_S = 2.0, 0.3

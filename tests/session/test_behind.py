@@ -21,6 +21,7 @@ from advisor.mavlink.link.link import MotionNow
 from advisor.mavlink.link.link_process import LinkProcess
 from advisor.mavlink.link.observer import LinkObserver
 from advisor.mavlink.wire.framing import CRC_EXTRA, FrameCutter
+from advisor.session import live
 from advisor.session.behind import BehindTeller
 from advisor.session.conducting import SessionReport
 from advisor.session.live import LinkSource, recording_line, renewed
@@ -239,3 +240,21 @@ def test_bank_and_air_speed_are_read_from_the_frames_of_the_vehicle_alone() -> N
     slow = dialect.MAVLink_vfr_hud_message(5.0, 0.0, 0, 0, 0.0, 0.0)
     motion.look(FrameCutter(CRC_EXTRA).feed(other.pack(slow)), 1)
     assert (motion.bank_rad, motion.airspeed_m_s) == (0.5, 22.0)
+
+
+def test_the_recording_is_told_with_its_size_and_the_free_disk(tmp_path: Path, monkeypatch) -> None:
+    usage = type("Usage", (), {"free": 41_400_000_000})
+    monkeypatch.setattr(live, "disk_usage", lambda folder: usage)
+    link = LinkStatistics(recording=tmp_path / "x.tlog", recorded_bytes=3_240_000)
+    assert live.recording_line(link) == "REC 3.2 MB, 41 GB free"
+    usage.free = 900_000_000
+    assert live.recording_line(link) == "REC 3.2 MB, 0.9 GB free"
+
+
+def test_a_link_without_a_recording_says_so() -> None:
+    assert live.recording_line(LinkStatistics()) == "NOT RECORDED"
+
+
+def test_a_recording_that_the_disk_refuses_is_no_recording(tmp_path: Path) -> None:
+    link = LinkStatistics(recording=tmp_path / "x.tlog", recording_problem="the disk is full")
+    assert live.recording_line(link) == "REC STOPPED at 0.0 MB"

@@ -15,7 +15,7 @@ from advisor.flight.signals.record import Channel
 from advisor.flight.signals.true_airspeed import standard_pressure
 from advisor.gap.records.prepare import prepare
 from advisor.gap.simulator.layout import HEIGHT
-from advisor.simulators.air import standard_heights
+from advisor.simulators.air import by_the_motion, standard_heights
 from advisor.simulators.as_given import Flying
 from advisor.simulators.compare import compare
 from advisor.simulators.linear import LinearSimulator
@@ -98,3 +98,34 @@ def test_the_reference_speed_of_linear_is_made_true_as_the_flights_speed_is(monk
         gap_of_logs.compare_flown(GapFlights(read, 0, ()), file, LinearSimulator({}, 20.0))
     assert asked["simulator"].reference_m_s == pytest.approx(22.0)
     assert asked["aircraft"].reference_airspeed_m_s == pytest.approx(22.0)
+
+
+THIN = 1.0605
+"""Ratio of the true to the indicated air speed at 1,200 m."""
+
+
+def logged(maneuver: Maneuver, factor: float, gain: float) -> Maneuver:
+    """Return the manoeuvre at 1,200 m, with an air speed that a factor makes wrong."""
+    speed, altitude = maneuver.channels["airspeed"], maneuver.channels["altitude"]
+    wrong = replace(speed, y=factor * speed.y, gain=gain)
+    high = replace(altitude, y=np.full(len(altitude.y), 1200.0))
+    return replace(maneuver, channels={**maneuver.channels, "airspeed": wrong, "altitude": high})
+
+
+@pytest.mark.parametrize(
+    ("factor", "gain", "used", "word"),
+    [
+        (1.0, THIN, 1.0, ""),
+        (THIN, THIN, 1.0, "a true one"),
+        (1.0 / THIN, 1.0, 1.0, "an indicated one"),
+        (1.02, THIN, 1.02, ""),
+    ],
+    ids=["as the convention says", "true where indicated is expected", "the other way", "a static error"],
+)
+def test_the_motion_decides_between_true_and_indicated_and_nothing_else(factor, gain, used, word):
+    maneuvers = flown(maneuvers=3)
+    found = by_the_motion([logged(m, factor, gain) for m in maneuvers], Aircraft())
+    ratio = found.maneuvers[0].channels["airspeed"].y / maneuvers[0].channels["airspeed"].y
+    assert ratio == pytest.approx(np.full(len(ratio), used), rel=1e-3)
+    assert word in found.note
+    assert bool(found.note) == bool(word)

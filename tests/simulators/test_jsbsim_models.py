@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.simulators import jsbsim_trim
+from advisor.simulators import jsbsim
 from advisor.simulators.jsbsim import Jsbsim, make_jsbsim
 from advisor.simulators.jsbsim_model import find_model
 from advisor.simulators.protocol import Condition, Inputs
@@ -206,13 +206,13 @@ def test_a_replay_that_diverges_is_one_sentence_and_the_next_flies() -> None:
 def test_a_trim_begins_at_that_of_the_condition_before(monkeypatch: pytest.MonkeyPatch) -> None:
     """An engine takes seconds of frozen flight at each throttle that is tried."""
     throttles: list[float] = []
-    steady = jsbsim_trim._steady
+    steady = jsbsim._steady
 
     def counted(flight, condition, guess):
         throttles.append(guess.throttle)
         return steady(flight, condition, guess)
 
-    monkeypatch.setattr(jsbsim_trim, "_steady", counted)
+    monkeypatch.setattr(jsbsim, "_steady", counted)
     one, fresh = Jsbsim(find_model("c172p")), Jsbsim(find_model("c172p"))
     first, second = Condition(53.0, 1800.0), Condition(53.2, 1801.0)
     one._steady(first)

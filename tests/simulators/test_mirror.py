@@ -8,8 +8,8 @@ import pytest
 from advisor.aircraft.aircraft import Aircraft
 from advisor.gap.result import Cause, Value
 from advisor.gap.verdict.statements import what
-from advisor.simulators.around import lagging
 from advisor.simulators.compare import compare
+from advisor.simulators.increments import lagging
 from advisor.simulators.mirror import _said, lateness, negative_of
 from advisor.simulators.protocol import Condition, Inputs
 from tests.simulators.nonlinear import STEP_S, Nonlinear, flown

@@ -5,7 +5,7 @@ from math import cos, sin
 import numpy as np
 import pytest
 
-from advisor.simulators.around import lagging
+from advisor.simulators.increments import lagging
 from advisor.simulators.interface import interface_fault
 from advisor.simulators.protocol import Condition, Inputs
 from advisor.simulators.stepped import Stepped

@@ -8,8 +8,7 @@ import numpy as np
 from advisor.gap.alternative import Alternative
 from advisor.gap.diagnose import Examined
 from advisor.gap.inference.findings import Added, Model
-from advisor.simulators.taken_back import without_raised, without_worse
-from advisor.simulators.unseen import UnseenManeuvers
+from advisor.simulators.unseen import UnseenManeuvers, without_raised, without_worse
 from tests.exports.models.test_orders import found as improvable
 
 NUMBERED = SimpleNamespace(

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from advisor.tui.plot.canvas import BLANK, Canvas
+from advisor.tui.plot.painting import BLANK, Canvas
 
 
 def dots(canvas: Canvas) -> int:

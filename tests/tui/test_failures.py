@@ -5,8 +5,8 @@ import asyncio
 import pytest
 
 from advisor.session.source import LinkHealth
-from advisor.tui.panes.alarm import Alarm
 from advisor.tui.panes.pilot import BigWord
+from advisor.tui.panes.status_line import Alarm
 from advisor.words.problems import Problem, UnusableInputError
 from tests.tui import flights
 from tests.tui.stage import stage

@@ -8,7 +8,7 @@ from advisor.campaign.state import CampaignState
 from advisor.decision.arriving import Arriving
 from advisor.decision.inputs import StepInput
 from advisor.flight.signals.instrument_finding import InstrumentFinding
-from advisor.report.facts.decision import decisions
+from advisor.report.facts.answers import decisions
 from advisor.session.source import LinkHealth
 from advisor.session.view import View
 from advisor.tui.advice import advise

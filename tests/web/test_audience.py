@@ -15,9 +15,8 @@ from advisor.session.source import LinkRequest
 from advisor.tui.explaining import keys_at_hand
 from advisor.tui.settings import Settings
 from advisor.web import viewer
-from advisor.web.showing import Audience, Showing
+from advisor.web.showing import Audience, Showing, Viewing
 from advisor.web.viewer import AttachedConductor, ServerGoneError, ViewerApp, WatchingApp
-from advisor.web.viewing import Viewing
 from tests.mavlink.link.builders import wait_until
 from tests.tui import flights
 from tests.tui.stage import Stage

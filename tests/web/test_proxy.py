@@ -14,8 +14,7 @@ from pathlib import Path
 import pytest
 
 from advisor.web.access import Access
-from advisor.web.server import WebServer, listening
-from advisor.web.site import Site
+from advisor.web.site import Site, WebServer, listening
 from tests.web.test_site import NOWHERE, PASSWORD, UPGRADE
 
 NGINX = shutil.which("nginx", path=f"{os.environ['PATH']}:/usr/sbin")

@@ -1,18 +1,22 @@
 """Who is let in, and what a server that nobody has opened a page of yet answers."""
 
+import asyncio
 import http.client
+import os
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
+from pathlib import Path
 from threading import Thread
 
 import pytest
+from aiohttp import ClientSession, web
+from textual_serve.download_manager import DownloadManager
 
 from advisor.mavlink.link.keeping import Door
-from advisor.web import login
-from advisor.web.access import Access, checked_origin
-from advisor.web.server import WebServer, listening
-from advisor.web.site import Site
+from advisor.web import access
+from advisor.web.access import VARIABLE, Access, checked_origin, read_password
+from advisor.web.site import PageProcess, Site, WebServer, listening
 from advisor.words.problems import ConfigurationError
 
 PASSWORD = "correct horse"
@@ -107,7 +111,7 @@ def test_the_right_password_passes_ahead_of_the_guesses_that_wait(guarded: Calle
 
 
 def test_further_guesses_than_may_wait_are_refused_unseen(guarded, monkeypatch):
-    monkeypatch.setattr(login, "MOST_WAITING", 1)
+    monkeypatch.setattr(access, "MOST_WAITING", 1)
     guess = Thread(target=Caller(guarded.port).log_in, args=("guess",))
     guess.start()
     time.sleep(0.2)
@@ -160,3 +164,88 @@ def test_behind_a_proxy_its_address_counts_as_the_own_one() -> None:
     assert not access.is_own_page("https://flight.example.elsewhere.example", "http", "127.0.0.1:8000")
     with pytest.raises(ConfigurationError, match="without a path"):
         checked_origin("https://flight.example/advisor")
+
+
+class Slow(DownloadManager):
+    """Cancels the downloads of a page at once, and again only after the page has ended."""
+
+    calls = 0
+
+    async def cancel_app_downloads(self, app_service_id: str) -> None:
+        self.calls += 1
+        await asyncio.sleep(self.calls - 1.0)
+        await super().cancel_app_downloads(app_service_id)
+
+
+async def ended_by_both() -> list[int | None]:
+    """Exit codes of a page's process, after each of two calls at the same time that end it."""
+    ended: asyncio.Future[list[int | None]] = asyncio.get_running_loop().create_future()
+
+    async def page(request: web.Request) -> web.WebSocketResponse:
+        socket = web.WebSocketResponse()
+        await socket.prepare(request)
+        process = PageProcess(Door("/nowhere", b""), socket, Slow())
+        await process.start(80, 24)
+
+        async def end() -> int | None:
+            await process.end()
+            assert process._process is not None
+            return process._process.returncode
+
+        ended.set_result(await asyncio.gather(end(), end()))
+        return socket
+
+    application = web.Application()
+    application.add_routes([web.get("/ws", page)])
+    runner = web.AppRunner(application)
+    await runner.setup()
+    with listening("127.0.0.1", 0) as at:
+        await web.SockSite(runner, at).start()
+        url = f"http://127.0.0.1:{at.getsockname()[1]}/ws"
+        async with ClientSession() as browser, browser.ws_connect(url) as socket:
+            await socket.receive(timeout=10.0)  # the browser answers that the page is closed
+            codes = await asyncio.wait_for(ended, 10.0)
+        await runner.cleanup()
+    return codes
+
+
+def test_a_page_that_is_closed_while_the_server_ends_it_ends_once() -> None:
+    codes = asyncio.run(ended_by_both())
+
+    assert None not in codes
+
+
+@pytest.fixture
+def crew(tmp_path: Path) -> Path:
+    file = tmp_path / "crew.txt"
+    file.write_text("windsock-27\nsecond line\n")
+    return file
+
+
+@pytest.mark.skipif(os.name != "posix", reason="permissions of other users exist on POSIX only")
+@pytest.mark.parametrize(
+    ("mode", "others_read"),
+    [(0o600, False), (0o400, False), (0o640, True), (0o604, True), (0o620, True), (0o610, True)],
+)
+def test_a_file_that_the_group_or_others_reach_is_named_with_its_mend(crew, capsys, mode, others_read):
+    crew.chmod(mode)
+    assert read_password(crew, "") == "windsock-27"
+    said = f"other users can read {crew}: chmod 600 {crew}\n"
+    assert capsys.readouterr().err == (said if others_read else "")
+
+
+def test_the_variable_gives_the_password_and_is_removed(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv(VARIABLE, "from-the-variable")
+    assert read_password(None, "") == "from-the-variable"
+    assert VARIABLE not in os.environ
+
+
+def test_a_file_comes_before_the_variable(crew: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    crew.chmod(0o600)
+    monkeypatch.setenv(VARIABLE, "from-the-variable")
+    assert read_password(crew, "") == "windsock-27"
+
+
+def test_no_password_is_needed_on_this_computer(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.delenv(VARIABLE, raising=False)
+    assert read_password(None, "") is None

@@ -15,7 +15,7 @@ from advisor.cli.improvement_export import listed, write_exports
 from advisor.cli.options import USAGE
 from advisor.cli.proving import document as proof_document
 from advisor.cli.proving import print_proof, proof_of
-from advisor.cli.stages import Stages
+from advisor.cli.running import Stages
 from advisor.exports.models.flown import FlownModel
 from advisor.exports.models.proof import Proof, stays_of
 from advisor.exports.models.write import ExportOutcome
@@ -25,8 +25,8 @@ from advisor.report.gap_screen import GapScreen
 from advisor.report.gap_steps import GapStep
 from advisor.report.table import PlainConsole
 from advisor.simulators.compare import Compared
+from advisor.words.ascii_output import printable
 from advisor.words.plain import plain
-from advisor.words.printable import printable
 
 C = TypeVar("C", bound=Compared | SideCompared)
 Tell = Callable[[str, float], None]

@@ -11,7 +11,7 @@ from advisor.campaign.hand_decisions import ByHand
 from advisor.cli.axes.axis_gap import AxisGap, Tell
 from advisor.cli.gap_asked import GapAsked
 from advisor.cli.options import decided_on
-from advisor.cli.stages import Stages
+from advisor.cli.running import Stages
 from advisor.exports.models.axes.handed_over import side_of_logs
 from advisor.exports.models.axes.prove_pitch import prove
 from advisor.exports.models.flown import FlownModel, SideModel, improved_model

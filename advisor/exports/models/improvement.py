@@ -1,5 +1,6 @@
 """Pitch model for every format: the estimated model, the prior model, the servo, and other effects."""
 
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
@@ -11,7 +12,7 @@ from advisor.flight.instruments.atmosphere import AirData
 from advisor.flight.signals.true_airspeed import SEA_LEVEL_DENSITY_KG_M3
 from advisor.gap.candidates.known import less_of_the_servo, together
 from advisor.gap.effects import EFFECTS
-from advisor.gap.result import Diagnosis, Value
+from advisor.gap.result import Diagnosis, Value, spelled
 from advisor.oem.coefficients import Coefficient, scales
 from advisor.words.problems import ConfigurationError
 from advisor.words.quantiles import NORMAL_95
@@ -200,3 +201,29 @@ def require_reference(reference: Reference, keys: tuple[str, ...]) -> None:
 def missing_reference(reference: Reference, keys: tuple[str, ...]) -> tuple[str, ...]:
     """Return the keys that an aircraft file does not state."""
     return tuple(key for key in keys if getattr(reference, key) is None)
+
+
+@dataclass(frozen=True)
+class Exported:
+    """Content of one file before it is written."""
+
+    text: str
+    left_out: tuple[str, ...] = ()
+    """Names of effects in sentences that the text does not contain."""
+    beside: tuple[str, ...] = ()
+    """Texts of additional files that the format writes next to this file."""
+
+
+def effects_beside(improvement: Improvement, *carried: str) -> tuple[str, ...]:
+    """Return the effects that are neither servo effects nor supported by a format."""
+    return tuple(spelled(effect) for effect in improvement.effects if effect not in carried)
+
+
+def commented(lines: list[str], mark: str) -> str:
+    """Return lines as a comment, each after the comment mark of a language."""
+    return "".join(f"{mark} {line}".rstrip() + "\n" for line in lines)
+
+
+def xml_comment(text: str) -> str:
+    """Return an XML comment, which cannot contain two successive hyphens."""
+    return f"<!-- {re.sub('-(?=-)', '- ', text)} -->"

@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.gap.result import Diagnosis, spelled
-from advisor.simulators.taken_back import taken_back_said, unused
+from advisor.simulators.unseen import taken_back_said, unused
 from advisor.words.digits import maneuvers_said, significant
 from advisor.words.problems import UnusableInputError
 

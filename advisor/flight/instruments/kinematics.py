@@ -13,7 +13,8 @@ from typing import Literal
 
 import numpy as np
 
-from advisor.flight.instruments.alpha_offset import (
+from advisor.flight.instruments.delayed_fit import coloured_covariance
+from advisor.flight.instruments.measured import (
     UNKNOWN,
     AlphaOffset,
     mean_offset,
@@ -21,7 +22,6 @@ from advisor.flight.instruments.alpha_offset import (
     speed_at,
     weighted,
 )
-from advisor.flight.instruments.delayed_fit import coloured_covariance
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.flight.signals.inferred_alpha import alpha_rate
 from advisor.flight.signals.motion import integrated

@@ -14,8 +14,8 @@ from typing import Literal, get_args
 from advisor.aircraft.script_identity import ScriptIdentity
 from advisor.flight.maneuvers.events import Notice
 from advisor.flight.maneuvers.maneuver import InputKind
-from advisor.words.printable import printable
-from advisor.words.vehicle_time import clock
+from advisor.words.ascii_output import printable
+from advisor.words.digits import clock
 
 TEXTS = (b"ADVISOR BEGIN", b"ADVISOR END", b"ADVISOR SCRIPT")
 """Beginnings of the announcements."""

@@ -5,8 +5,8 @@ from math import nan
 
 from advisor.flight.maneuvers.maneuver import InputKind, Maneuver
 from advisor.flight.vehicle.vehicle import Vehicle
+from advisor.words.ascii_output import printable
 from advisor.words.axes import AxisName
-from advisor.words.printable import printable
 from advisor.words.problems import Problem
 
 _SOON_S = 30.0

@@ -20,7 +20,7 @@ from typing import Any
 
 import numpy as np
 
-from advisor.flight.maneuvers.loop import PITCH, Loop
+from advisor.flight.maneuvers.hand_flying import PITCH, Loop
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.flight.signals.motion import integrated
 from advisor.process.arrays import FloatArray

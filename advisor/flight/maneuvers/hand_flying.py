@@ -5,6 +5,7 @@ model's limits is no test, but other flying.
 """
 
 from collections.abc import Iterator
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -13,6 +14,25 @@ from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.flight.maneuvers.steady_speed import speed_before
 from advisor.process.arrays import FloatArray
 from advisor.words.digits import distinct_texts
+
+
+@dataclass(frozen=True, slots=True)
+class Loop:
+    """Channels of one control and of its response, with their names in sentences."""
+
+    control: str
+    """Channel of the deflection."""
+    rate: str
+    """Channel of the angular rate that responds."""
+    angle: str
+    """Channel of the integrated angle; empty if no angle is measured."""
+    rate_said: str
+
+
+PITCH = Loop("elevator", "q", "theta", "pitch rate")
+ROLL = Loop("aileron", "p", "bank", "roll rate")
+YAW = Loop("rudder", "r", "", "yaw rate")
+
 
 OTHER_CONTROLS_DEG = 5.0
 """Largest motion of aileron and rudder during a pitch test, half of the range, deg."""

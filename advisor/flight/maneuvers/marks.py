@@ -15,8 +15,8 @@ from advisor.flight.maneuvers.announced import SCRIPT_NOTICE, Announced, Announc
 from advisor.flight.maneuvers.events import Notice
 from advisor.flight.maneuvers.maneuver import Span
 from advisor.flight.maneuvers.segmentation import LEAD_IN_S
+from advisor.words.digits import clock, stretch
 from advisor.words.problems import Problem
-from advisor.words.vehicle_time import clock, stretch
 
 Marker = Literal["hand", "switch", "text", "system id", "script"]
 

@@ -15,8 +15,7 @@ from advisor.aircraft.aircraft import Limits
 from advisor.flight.maneuvers.binned import shows_hands
 from advisor.flight.maneuvers.excitation import excitation
 from advisor.flight.maneuvers.free_response import FREE_S
-from advisor.flight.maneuvers.hand_flying import flown_elsewhere
-from advisor.flight.maneuvers.loop import PITCH, Loop
+from advisor.flight.maneuvers.hand_flying import PITCH, Loop, flown_elsewhere
 from advisor.flight.maneuvers.maneuver import Maneuver, Span
 from advisor.flight.maneuvers.markers import SWEPT, marked_span
 from advisor.flight.maneuvers.marks import Mark

@@ -29,7 +29,7 @@ from advisor.flight.maneuvers.axes.side_inputs import (
 )
 from advisor.flight.maneuvers.binned import HISTORY_S
 from advisor.flight.maneuvers.events import Activity, FlightEvent, ManeuverFlown, Notice, SideManeuverFlown
-from advisor.flight.maneuvers.loop import PITCH, ROLL, YAW, Loop
+from advisor.flight.maneuvers.hand_flying import PITCH, ROLL, YAW, Loop
 from advisor.flight.maneuvers.maneuver import Maneuver, Span
 from advisor.flight.maneuvers.markers import marked_span
 from advisor.flight.maneuvers.marks import Mark, Marks

@@ -14,7 +14,7 @@ from advisor.flight.vehicle.following import FOLLOW, TAKE, Following, chosen
 from advisor.flight.vehicle.modes import in_hover, mode_name
 from advisor.flight.vehicle.parameters import AIRSPEED_SENSOR, LOG_PROFILE, Parameters, filter_delay_s
 from advisor.flight.vehicle.vehicle import Vehicle, VehicleFinder
-from advisor.words.printable import printable
+from advisor.words.ascii_output import printable
 
 _BUNDLED = b"Bundled aircraft"
 """Beginning of the STATUSTEXT with which this project's simulator introduces itself."""

@@ -22,7 +22,7 @@ from advisor.flight.signals.trust import Distrust, distrusted
 from advisor.flight.stream.identity import Identity
 from advisor.flight.vehicle.breaks import Breaks
 from advisor.process.arrays import FloatArray
-from advisor.words.vehicle_time import clock
+from advisor.words.digits import clock
 
 _WATCHED = {
     "q": "pitch rate",

@@ -41,7 +41,7 @@ from advisor.flight.vehicle.following import FOLLOW, TAKE, SenderWatch
 from advisor.flight.vehicle.pieces import Master
 from advisor.flight.vehicle.surfaces import Surface
 from advisor.flight.vehicle.vehicle import Vehicle
-from advisor.words.printable import printable
+from advisor.words.ascii_output import printable
 from advisor.words.problems import Problem
 
 _EVERY_S = 10.0

@@ -23,8 +23,8 @@ from advisor.flight.vehicle.modes import closes_pitch_loop
 from advisor.flight.vehicle.pieces import Master, by_boot, pieces
 from advisor.flight.vehicle.vehicle import Vehicle
 from advisor.process.arrays import FloatArray, IntArray
+from advisor.words.digits import clock
 from advisor.words.problems import Problem
-from advisor.words.vehicle_time import clock
 
 _OUTPUTS = ("SERVO_OUTPUT_RAW", "ACTUATOR_OUTPUT_STATUS")
 _HEARTBEAT_S = 2.2

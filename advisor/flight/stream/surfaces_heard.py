@@ -17,8 +17,8 @@ from advisor.flight.vehicle.parameters import Parameters, Sender, Stated, read_b
 from advisor.flight.vehicle.surfaces import Surface
 from advisor.flight.vehicle.vehicle import Vehicle, VehicleFinder
 from advisor.flight.vehicle.wiring import Wiring
+from advisor.words.digits import clock
 from advisor.words.problems import Problem
-from advisor.words.vehicle_time import clock
 
 _GROUND_STATION = 190
 """Component id (MAV_COMP_ID_MISSIONPLANNER) of a ground station that records parameters from a file."""

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from advisor.mavlink.records.dataflash import RecordTable
 from advisor.mavlink.records.equivalent import latest
 from advisor.process.arrays import FloatArray, IntArray
-from advisor.words.vehicle_time import clock, stretch
+from advisor.words.digits import clock, stretch
 
 BoolArray = NDArray[np.bool_]
 _MOST_CHANGES = 5

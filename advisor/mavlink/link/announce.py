@@ -7,8 +7,7 @@ from pymavlink.dialects.v20 import ardupilotmega as dialect
 
 from advisor.mavlink.link.connection import parse_connection
 from advisor.mavlink.link.outgoing import Ids, Packer, Talker
-from advisor.mavlink.link.transport import ConnectionCutError, Transport
-from advisor.mavlink.link.transports import open_transport
+from advisor.mavlink.link.transports import ConnectionCutError, Transport, open_transport
 from advisor.words.ascii_output import plain
 
 CHUNK_BYTES = 50

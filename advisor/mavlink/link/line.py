@@ -5,8 +5,7 @@ import time
 from threading import Event
 
 from advisor.mavlink.link.connection import Address
-from advisor.mavlink.link.transport import ConnectionCutError, Peer, Transport
-from advisor.mavlink.link.transports import open_transport
+from advisor.mavlink.link.transports import ConnectionCutError, Peer, Transport, open_transport
 from advisor.words.problems import UnusableInputError
 
 REOPEN_EVERY_S = 1.0

@@ -20,18 +20,17 @@ from advisor.flight.signals.messages import Columns
 from advisor.flight.vehicle.breaks import DOWN
 from advisor.flight.vehicle.following import FOLLOW, TAKE
 from advisor.mavlink.link.connection import parse_connection
-from advisor.mavlink.link.conversation import Conversation
 from advisor.mavlink.link.health import LinkStatistics
 from advisor.mavlink.link.inquiry import Inquiry
 from advisor.mavlink.link.intake import Intake
 from advisor.mavlink.link.line import Line
 from advisor.mavlink.link.link_watch import LinkWatch
-from advisor.mavlink.link.outgoing import OWN_COMPONENT, OWN_SYSTEM, Heartbeat, Ids, Talker
+from advisor.mavlink.link.outgoing import OWN_COMPONENT, OWN_SYSTEM, Conversation, Heartbeat, Ids, Talker
 from advisor.mavlink.link.recorder import Recorder
-from advisor.mavlink.link.transport import ConnectionCutError
+from advisor.mavlink.link.transports import ConnectionCutError
 from advisor.mavlink.wire.framing import CRC_EXTRA, Frame
 from advisor.mavlink.wire.signing import SignatureCheck
-from advisor.words.printable import printable
+from advisor.words.ascii_output import printable
 
 _ATTITUDE, _VFR_HUD = 30, 74
 

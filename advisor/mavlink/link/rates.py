@@ -7,9 +7,8 @@ from typing import Any
 
 from pymavlink.dialects.v20 import ardupilotmega as dialect
 
-from advisor.mavlink.link.delivery import Delivery
 from advisor.mavlink.link.intake import is_ground_station, who_sets_rates
-from advisor.mavlink.link.link_watch import RebootWatch
+from advisor.mavlink.link.link_watch import Delivery, RebootWatch
 from advisor.mavlink.link.outgoing import Talker
 from advisor.mavlink.wire.definitions import DEFINITIONS
 from advisor.mavlink.wire.framing import Frame

@@ -21,7 +21,7 @@ from advisor.mavlink.logs.logs import open_log
 from advisor.mavlink.logs.parameter_file import MESSAGE, stated_by_file
 from advisor.mavlink.records.equivalent import message
 from advisor.mavlink.wire.frames import FrameScanner
-from advisor.words.printable import printable
+from advisor.words.ascii_output import printable
 from advisor.words.problems import UnusableInputError
 
 _STATE = ("PARAM_VALUE", MESSAGE)

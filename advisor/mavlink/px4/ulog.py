@@ -37,9 +37,9 @@ from advisor.mavlink.px4.px4_topics import (
 from advisor.mavlink.px4.px4_vehicle import unix_time_base_s
 from advisor.mavlink.records.equivalent import latest, message, milliseconds, side_by_side, system_id
 from advisor.process.arrays import FloatArray, IntArray
+from advisor.words.digits import clock
 from advisor.words.mends import mends_of, sentence
 from advisor.words.problems import UnusableInputError
-from advisor.words.vehicle_time import clock
 
 _ESTIMATES = {
     "vehicle_attitude": "estimator_attitude",

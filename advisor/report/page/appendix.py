@@ -1,4 +1,4 @@
-"""End of the page: quality of the telemetry, assumptions, and origin of the data."""
+"""End of the page: asked fields, vibration, telemetry, assumptions, and origin of the data."""
 
 from collections.abc import Iterator, Sequence
 
@@ -6,18 +6,26 @@ import numpy as np
 from matplotlib.figure import Figure as Drawing
 from matplotlib.ticker import FuncFormatter
 
-from advisor.analysis.field_sums import FieldSum
-from advisor.analysis.vibration import Spectrum, Vibration
+from advisor.analysis.vibration import FieldSum, Spectrum, Vibration
 from advisor.flight.signals.record import Channel
 from advisor.gap.effects import EFFECTS
 from advisor.oem.notes import FOR_THE_FILE
-from advisor.report.page.blocks import Block, Figure, Gallery, Paragraph, Section, Verbatim, listing, section
-from advisor.report.page.content import Content, Document
+from advisor.report.page.blocks import (
+    Block,
+    Content,
+    Document,
+    Figure,
+    Gallery,
+    Paragraph,
+    Section,
+    Verbatim,
+    listing,
+    section,
+)
 from advisor.report.page.drawing import BLACK, BLUE, GREY, ORANGE, picture
 from advisor.report.page.flight_picture import thinned
-from advisor.report.result_rows import channel_table, message_table
-from advisor.report.table import Table
-from advisor.words.vehicle_time import CLOCK, clock
+from advisor.report.table import Table, channel_table, message_table
+from advisor.words.digits import CLOCK, clock
 
 
 @section("telemetry", "Telemetry")

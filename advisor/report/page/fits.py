@@ -10,8 +10,7 @@ from matplotlib.figure import Figure as Drawing
 from advisor.campaign.state import JudgedManeuver
 from advisor.flight.signals.record import Channel
 from advisor.oem.estimate import ChannelFit, Estimate
-from advisor.report.page.blocks import Block, Figure, Gallery, Paragraph, section
-from advisor.report.page.content import Content
+from advisor.report.page.blocks import Block, Content, Figure, Gallery, Paragraph, section
 from advisor.report.page.drawing import BLACK, BLUE, GREY, ORANGE, picture
 from advisor.words.quantiles import NORMAL_95
 from advisor.words.quantities import CHANNELS

@@ -13,8 +13,7 @@ from matplotlib.ticker import FixedLocator, FuncFormatter, NullLocator
 from advisor.model.mil_f_8785c import CATEGORIES, LIMITS, Range, ShortPeriodLimits
 from advisor.process.arrays import FloatArray
 from advisor.report.facts.estimates import fact_of
-from advisor.report.page.blocks import Block, Figure, Gallery, Paragraph, listing, section
-from advisor.report.page.content import Content, Document
+from advisor.report.page.blocks import Block, Content, Document, Figure, Gallery, Paragraph, listing, section
 from advisor.report.page.drawing import BLACK, BLUE, GREY, log_ticks, picture
 from advisor.report.qualities import NAMES
 from advisor.report.table import Table

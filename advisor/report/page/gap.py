@@ -12,8 +12,17 @@ from advisor.report.facts.gap import LAWS
 from advisor.report.facts.reasons import in_percent, is_shown, weighed
 from advisor.report.facts.sizes import WORSE, marked, short
 from advisor.report.gap_causes import by_reason
-from advisor.report.page.blocks import Block, Figure, Gallery, Paragraph, Verbatim, listing, section
-from advisor.report.page.content import Content, Document
+from advisor.report.page.blocks import (
+    Block,
+    Content,
+    Document,
+    Figure,
+    Gallery,
+    Paragraph,
+    Verbatim,
+    listing,
+    section,
+)
 from advisor.report.page.drawing import BLUE, GREY, picture
 from advisor.report.page.gap_picture import caption, gap_picture
 from advisor.report.table import Table

@@ -10,7 +10,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure as Drawing
 
-from advisor.report.page.content import Document
+from advisor.report.page.blocks import Document
 from advisor.report.page.drawing import BLUE, GREY, ORANGE, picture, save
 from advisor.words.quantiles import NORMAL_95
 from advisor.words.quantities import CHANNELS

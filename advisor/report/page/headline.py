@@ -4,11 +4,9 @@ from collections.abc import Iterator
 
 from advisor.report.facts.estimates import untold
 from advisor.report.page.axes.lateral_section import decided
-from advisor.report.page.blocks import Block, Paragraph, listing, section
-from advisor.report.page.content import Content
+from advisor.report.page.blocks import Block, Content, Paragraph, listing, section
 from advisor.report.page.gap import glance
-from advisor.report.result_rows import joint_table
-from advisor.report.table import Table
+from advisor.report.table import Table, joint_table
 
 
 @section("verdict", "Verdict")

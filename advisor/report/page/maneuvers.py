@@ -3,11 +3,10 @@
 from collections.abc import Mapping
 from typing import Any
 
-from advisor.report.page.blocks import Section, listing
-from advisor.report.page.content import Content
+from advisor.report.page.blocks import Content, Section, listing
 from advisor.report.table import Table
 from advisor.report.text import caution_lines
-from advisor.words.vehicle_time import CLOCK, clock
+from advisor.words.digits import CLOCK, clock
 
 _HYPHEN, _SPACE = "\N{NON-BREAKING HYPHEN}", "\N{NO-BREAK SPACE}"
 ANCHORS = {"": "maneuver-list", "R": "lateral-maneuvers"}

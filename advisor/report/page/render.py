@@ -10,11 +10,9 @@ from markupsafe import Markup
 from advisor.process.parts import FailedPart, attempt
 from advisor.report.page.appendix import assumptions, fields, provenance, telemetry, vibration
 from advisor.report.page.axes.lateral_section import lateral
-from advisor.report.page.blocks import Block, Paragraph, Part, Section
-from advisor.report.page.content import Content
-from advisor.report.page.criterion import criterion
+from advisor.report.page.blocks import Block, Content, Paragraph, Part, Section
 from advisor.report.page.drawing import LAYER
-from advisor.report.page.estimates import estimates
+from advisor.report.page.estimates import criterion, estimates
 from advisor.report.page.fits import fits
 from advisor.report.page.flight_picture import flight_picture
 from advisor.report.page.flying_qualities import flying

@@ -1,13 +1,13 @@
-"""Pane of the arriving data: the link, every channel, and the source of the angle of attack."""
+"""Panes of the arriving data and of the event log."""
 
 from textual.app import ComposeResult
 from textual.containers import VerticalScroll
 
 from advisor.session.view import View
 from advisor.tui.panes.lines import HangingLines, Labelled, Lines
-from advisor.tui.panes.pane import Pane
+from advisor.tui.panes.pane import Pane, TextPane
 from advisor.tui.panes.status_line import CONDITIONS
-from advisor.words.vehicle_time import clock
+from advisor.words.digits import clock
 
 
 def alpha_in_words(view: View) -> str:
@@ -58,3 +58,34 @@ gusts), or *simulated*. Then every channel with its source, its rate and its lon
         problems.display = bool(said)
         problems.write("\n".join(said))
         self.query_one("#arriving", HangingLines).write_rows(rows)
+
+
+_SHOWN = 200
+_TIME = 9
+"""Number of characters before a sentence, for the sentence's time and two blanks."""
+
+
+class EventLogPane(TextPane):
+    """Pane with the newest sentences of the event log, the last sentence at the bottom."""
+
+    TITLE = "8 Log"
+    SHORT = "8Log"
+    EMPTY = "Nothing has happened yet."
+    HELP = """\
+# Log
+
+Verdicts, marks, notes, changes by hand, what the vehicle said in words (STATUSTEXT, with its severity, and
+its sender where that is not the vehicle) and what the link reported, newest at the bottom. **m** adds a mark
+at this moment.
+
+Times are minutes:seconds since power-on, as in the table of manoeuvres and in the replay bar. They
+begin anew where a line says that another power-on, flight or vehicle begins.
+"""
+
+    def on_mount(self) -> None:
+        """Keep the newest sentence visible."""
+        self.query_one(VerticalScroll).anchor()
+
+    def show(self, view: View) -> None:
+        if view.log and self.changed(view.log):
+            self.write((line[:_TIME], line[_TIME:]) for line in view.log[-_SHOWN:])

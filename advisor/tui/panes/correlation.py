@@ -13,8 +13,7 @@ from advisor.oem.estimate import Estimate
 from advisor.process.arrays import FloatArray
 from advisor.session.view import View
 from advisor.tui.panes.lines import Redrawn
-from advisor.tui.panes.pane import Pane
-from advisor.tui.table_rows import TableRows
+from advisor.tui.panes.pane import Pane, TableRows
 from advisor.words.digits import signed
 from advisor.words.quantities import PARAMETERS
 

@@ -10,10 +10,9 @@ from advisor.process.arrays import FloatArray
 from advisor.report.facts.estimates import of_all, of_one
 from advisor.session.view import View
 from advisor.tui.panes.lines import Redrawn
-from advisor.tui.panes.pane import Pane
+from advisor.tui.panes.pane import Pane, TableRows
 from advisor.tui.plot.chart import Chart, Level, Series
 from advisor.tui.plot.widget import Plot
-from advisor.tui.table_rows import TableRows
 from advisor.words.quantities import PARAMETERS, SIDE_PARAMETERS
 
 _MANY = 4

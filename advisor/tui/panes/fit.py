@@ -21,10 +21,9 @@ from advisor.tui.panes.fit_charts import (
     rows_of_fit,
 )
 from advisor.tui.panes.lines import Redrawn
-from advisor.tui.panes.pane import Pane
+from advisor.tui.panes.pane import Pane, TableRows
 from advisor.tui.plot.widget import Plot
 from advisor.tui.plot.window import Sight, Window
-from advisor.tui.table_rows import TableRows
 from advisor.words.digits import signed
 
 _ROWS_FOR_ONE = 11

@@ -8,8 +8,8 @@ from advisor.campaign.state import JudgedManeuver
 from advisor.model.axes.lateral import LATERAL
 from advisor.oem.estimate import ChannelFit, Estimate
 from advisor.process.arrays import FloatArray
+from advisor.tui.panes.pane import TableRows
 from advisor.tui.plot.chart import Chart, Ink, Mark, Series
-from advisor.tui.table_rows import TableRows
 from advisor.words.quantities import channel
 
 OUTPUTS = ("alpha", "q", "a_z", "theta")

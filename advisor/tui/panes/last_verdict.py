@@ -13,9 +13,8 @@ from advisor.tui.advice import without_word
 from advisor.tui.block_letters import HEIGHT, block_letters
 from advisor.tui.panes.lines import Labelled, Lines, Part
 from advisor.tui.panes.pane import TextPane
-from advisor.words.digits import distinct_texts, signed
+from advisor.words.digits import distinct_texts, signed, stretch
 from advisor.words.quantities import channel
-from advisor.words.vehicle_time import stretch
 
 
 def symbol_and_word(judged: JudgedManeuver) -> tuple[str, str]:

@@ -9,10 +9,9 @@ from advisor.oem.estimate import ChannelFit, Estimate
 from advisor.process.arrays import FloatArray
 from advisor.session.view import View
 from advisor.tui.panes.fit_charts import OUTPUTS, fits_of
-from advisor.tui.panes.pane import Pane
+from advisor.tui.panes.pane import Pane, TableRows
 from advisor.tui.plot.chart import Chart, Level, Series
 from advisor.tui.plot.widget import Plot
-from advisor.tui.table_rows import TableRows
 from advisor.words.quantiles import NORMAL_95
 from advisor.words.quantities import channel
 

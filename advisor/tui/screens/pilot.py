@@ -7,14 +7,11 @@ from textual.events import Resize
 
 from advisor.session.view import View
 from advisor.tui.advice import advise
-from advisor.tui.panes.alarm import Alarm
-from advisor.tui.panes.ask import Ask
 from advisor.tui.panes.last_verdict import LastVerdict
 from advisor.tui.panes.lines import Lines, Part
 from advisor.tui.panes.pilot import BigWord, CrewNotes, Gauge, NextInput, Why
-from advisor.tui.panes.replay_bar import ReplayBar
-from advisor.tui.panes.status_line import KeysLine, StatusLine
-from advisor.tui.screens.face import Face
+from advisor.tui.panes.status_line import Alarm, KeysLine, ReplayBar, StatusLine
+from advisor.tui.screens.face import Ask, Face
 
 _APART = "    "
 

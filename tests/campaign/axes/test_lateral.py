@@ -12,8 +12,8 @@ from advisor.flight.maneuvers.markers import SWEPT
 from advisor.flight.maneuvers.marks import Mark
 from advisor.flight.vehicle.parameters import filter_delay_s
 from advisor.report.axes.lateral_document import lateral_document
-from advisor.report.facts.decision import lateral_decision
-from advisor.report.result_rows import joint_table, maneuver_line
+from advisor.report.facts.answers import lateral_decision
+from advisor.report.table import joint_table, maneuver_line
 from tests.flight.columns import Wire, heartbeat, plane_parameters
 from tests.heard import hear
 from tests.oem.axis.builders import JET, flown, steps

@@ -10,9 +10,8 @@ import pytest
 from advisor.aircraft.aircraft import Aircraft
 from advisor.analysis import whole_flights
 from advisor.analysis.whole_flights import WholeFlights
-from advisor.exports.flights.formats import WRITERS, write_formats
+from advisor.exports.flights.formats import WRITERS, staged, write_formats
 from advisor.exports.flights.reading import dataset
-from advisor.exports.flights.staging import staged
 from advisor.exports.flights.table import Dataset
 from advisor.report.document import analysis_document
 from tests.flights import FOUR, recorded

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from advisor.exports.flights.staging import staged
+from advisor.exports.flights.formats import staged
 from advisor.words.problems import ConfigurationError
 from tests.conftest import Advisor
 from tests.flights import TWO, recorded

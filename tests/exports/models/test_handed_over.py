@@ -9,6 +9,7 @@ import pytest
 from advisor.aircraft.aircraft import Aircraft
 from advisor.cli.gap_asked import GapAsked
 from advisor.exports.models.axes import handed_over
+from advisor.exports.models.axes import handed_over as roll_and_yaw
 from advisor.exports.models.axes.handed_over import improved_side
 from advisor.exports.models.flown import FlownModel, side_of
 from advisor.exports.models.formats.aircraft_format import AircraftFormat
@@ -79,3 +80,36 @@ def test_the_command_tells_what_the_improved_file_lacks(monkeypatch, capsys, tmp
     assert "better.yaml has no key for: aileron actuator backlash." in " ".join(
         capsys.readouterr().err.split()
     )
+
+
+BIN = Path(__file__).parents[2] / "cases" / "base.bin"
+
+
+def test_a_flight_without_aileron_and_rudder_inputs_is_read_once_and_judged_never(monkeypatch):
+    def judged(*_, **__):
+        raise AssertionError
+
+    monkeypatch.setattr(roll_and_yaw, "read_whole", judged)
+    assert roll_and_yaw.side_of_logs([BIN], Aircraft()) is None
+
+
+def test_a_log_that_cannot_be_read_tells_nothing_of_roll_and_yaw(tmp_path):
+    (tmp_path / "x.tlog").write_bytes(b"")
+    assert roll_and_yaw.side_of_logs([tmp_path / "x.tlog"], Aircraft()) is None
+
+
+@pytest.mark.parametrize("flies", [True, False])
+def test_the_campaign_is_judged_where_a_control_of_roll_and_yaw_was_flown(monkeypatch, flies):
+    class JudgedError(Exception):
+        pass
+
+    def judged(*_, **__):
+        raise JudgedError
+
+    monkeypatch.setattr(roll_and_yaw, "flies_roll_or_yaw", lambda *_: flies)
+    monkeypatch.setattr(roll_and_yaw, "read_whole", judged)
+    if flies:
+        with pytest.raises(JudgedError):
+            roll_and_yaw.side_of_logs([BIN], Aircraft())
+    else:
+        assert roll_and_yaw.side_of_logs([BIN], Aircraft()) is None

@@ -2,7 +2,8 @@
 
 import pytest
 
-from advisor.exports.models.improvement import air_note
+from advisor.aircraft.controls import Elevator
+from advisor.exports.models.improvement import ExportedServo, air_note, servo_of
 from advisor.flight.instruments.atmosphere import AirData
 from advisor.gap.result import Value
 from tests.exports.models.cases import MODEL, air_at, improvement
@@ -48,3 +49,17 @@ def test_a_prior_value_differs_outside_two_standard_deviations():
     for half in (-1.608, 1.608):
         assert one.differs("M_alpha", MODEL["M_alpha"] + half)
         assert not one.differs("M_alpha", MODEL["M_alpha"] + 0.999 * half)
+
+
+FOUND = {"transport_delay": {"delay_s": 0.03}, "actuator_lag": {"lag_s": 0.08}}
+
+
+def test_delay_and_lag_of_the_file_and_of_the_flight_add_up():
+    servo = servo_of(Elevator(delay_s=0.02, lag_s=0.05), FOUND)
+    assert (servo.delay_s, servo.lag_s) == pytest.approx((0.05, 0.13))
+
+
+def test_a_file_without_a_servo_leaves_what_was_found():
+    servo = servo_of(Elevator(), FOUND)
+    assert (servo.delay_s, servo.lag_s) == pytest.approx((0.03, 0.08))
+    assert servo_of(Elevator(), {}) == ExportedServo()

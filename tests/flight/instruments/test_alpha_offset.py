@@ -2,7 +2,7 @@
 
 import pytest
 
-from advisor.flight.instruments.alpha_offset import UNKNOWN, AlphaOffset
+from advisor.flight.instruments.measured import UNKNOWN, AlphaOffset
 
 
 @pytest.mark.parametrize("sense", [1.0, -1.0])

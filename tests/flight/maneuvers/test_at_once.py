@@ -6,7 +6,7 @@ import pytest
 from advisor.aircraft.aircraft import Aircraft
 from advisor.flight.maneuvers.axes.side_inputs import SideMovement, with_elevator
 from advisor.flight.maneuvers.events import ManeuverFlown, SideManeuverFlown
-from advisor.flight.maneuvers.loop import PITCH, ROLL, YAW, Loop
+from advisor.flight.maneuvers.hand_flying import PITCH, ROLL, YAW, Loop
 from advisor.flight.maneuvers.maneuver import Span
 from advisor.flight.stream.stream import FlightStream
 from tests.flight.columns import Wire, heartbeat, hud, plane_parameters, servo

@@ -1,12 +1,16 @@
 """What vehicles say in words comes whole, printable, bounded, with severity and sender."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
+from advisor.flight.instruments import examined as examining
 from advisor.flight.maneuvers.events import VehicleSaid
 from advisor.flight.signals.messages import Columns
+from advisor.flight.stream import state
 from advisor.flight.stream.identity import READER
-from advisor.flight.stream.state import VehicleTexts
+from advisor.flight.stream.state import InstrumentWatch, VehicleTexts
 from advisor.flight.vehicle.following import FOLLOW
 
 
@@ -77,3 +81,15 @@ def test_what_the_advisor_wrote_itself_and_empty_texts_are_no_texts_of_a_vehicle
 
 def test_a_log_that_keeps_no_severity_has_none():
     assert [one.severity for one in said(statustext(b"Ready", severity=255))] == [""]
+
+
+@pytest.mark.parametrize(("evidence", "stretches"), [({"theta_scale": None}, 6), ({}, 29)])
+def test_the_watch_ends_after_six_stretches_with_motion(monkeypatch, evidence, stretches):
+    made = []
+    examined = SimpleNamespace(evidence=evidence, findings=())
+    monkeypatch.setattr(state, "examine", lambda *_: made.append(1) or examined)
+    monkeypatch.setattr(state, "examine_side", lambda *_: SimpleNamespace(evidence={}, findings=()))
+    monkeypatch.setattr(examining, "pooled", lambda _: {})
+    watch = InstrumentWatch(lambda name, since_s, until_s: SimpleNamespace(t=np.array([since_s, until_s])))
+    watch.advance(0.0, 300.0)
+    assert len(made) == stretches

@@ -13,7 +13,7 @@ from advisor.flight.maneuvers.maneuver import Maneuver, Span
 from advisor.flight.signals.messages import Columns
 from advisor.flight.stream.stream import FlightStream
 from advisor.flight.vehicle.breaks import DOWN
-from advisor.mavlink.link.conversation import Conversation
+from advisor.mavlink.link.outgoing import Conversation
 from advisor.oem.estimate import NoEstimate
 from tests.flights import TWO, recorded
 from tests.heard import hear

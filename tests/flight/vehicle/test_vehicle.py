@@ -1,8 +1,10 @@
 """Who the vehicle is among everything that sends heartbeats."""
 
+from math import nan
+
 import pytest
 
-from advisor.flight.vehicle.modes import closes_pitch_loop, hovers, mode_name
+from advisor.flight.vehicle.modes import closes_pitch_loop, hovers, mode_name, stays
 from advisor.flight.vehicle.vehicle import Vehicle, VehicleFinder, is_aircraft
 from tests.flight.columns import Wire, heartbeat
 from tests.rows import row
@@ -78,3 +80,15 @@ def test_a_copters_mode_zero_is_not_a_planes_manual():
 def test_a_quadplane_hovers_in_its_modes_of_the_rotors():
     assert all(hovers(mode) for mode in ("QHOVER", "QLOITER", "QSTABILIZE", "LOITER_ALT_QLAND"))
     assert not any(hovers(mode) for mode in ("MANUAL", "FBWA", "Manual", "AUTOLAND", ""))
+
+
+CHANGES = ((nan, ""), (nan, "TAKEOFF"), (10.0, "FBWA"), (40.0, "MANUAL"))
+
+
+def test_a_stay_lasts_until_the_next_mode_and_the_last_one_to_the_end():
+    found = list(stays(CHANGES, 2.0, 60.0))
+    assert found == [(2.0, 10.0, "TAKEOFF"), (10.0, 40.0, "FBWA"), (40.0, 60.0, "MANUAL")]
+
+
+def test_a_stay_outside_the_two_times_is_left_out_or_cut():
+    assert list(stays(CHANGES, 20.0, 30.0)) == [(20.0, 30.0, "FBWA")]

@@ -5,7 +5,7 @@ import pytest
 
 from advisor.flight.maneuvers.events import Notice, VehicleSaid
 from advisor.flight.maneuvers.markers import SWEPT
-from advisor.mavlink.ardupilot.log_health import lost_texts, sweeps
+from advisor.mavlink.ardupilot.log_health import health, lost_texts, sweeps
 from advisor.mavlink.records.dataflash import RecordTable
 from tests.heard import hear_log
 from tests.mavlink.ardupilot.test_autopilot_logs import dataflash_flight
@@ -70,3 +70,46 @@ def test_a_log_whose_texts_are_lost_has_the_sweep_as_a_manoeuvre(tmp_path, mode)
     assert maneuver.span.end_s == pytest.approx(26.0, abs=0.05)
     said = [event.text for event in heard.events if isinstance(event, VehicleSaid | Notice)]
     assert any("SystemID sweeps the elevator (SID_AXIS 23)" in text for text in said)
+
+
+def gps(clock_speed: float, jitter_s: float = 0.02, seconds: float = 60.0) -> RecordTable:
+    """GPS records at 5 Hz, written by a clock of this speed, late by a random time."""
+    true_s = np.arange(0.0, seconds, 0.2)
+    late_s = np.random.default_rng(4).uniform(0.0, jitter_s, len(true_s))
+    boot_us = (1e6 * (100.0 + clock_speed * true_s + late_s)).astype(np.int64)
+    week = np.full(len(true_s), 2300)
+    fields = {"TimeUS": boot_us, "GWk": week, "GMS": (1e3 * (5000.0 + true_s)).astype(np.int64)}
+    return RecordTable(np.arange(len(true_s)), fields)
+
+
+def dsf(*dropped: int) -> RecordTable:
+    n = len(dropped)
+    return RecordTable(np.arange(n), {"TimeUS": np.arange(n) * 1_000_000, "Dp": np.array(dropped)})
+
+
+@pytest.mark.parametrize(("speed", "said"), [(1.03, "runs 3.0 % fast"), (0.97, "runs 3.0 % slow")])
+def test_a_clock_that_gps_time_contradicts_is_said(speed: float, said: str) -> None:
+    (one,) = health({"GPS": gps(speed)})
+    assert said in one.text
+
+
+def test_a_right_clock_is_not_mentioned() -> None:
+    assert list(health({"GPS": gps(1.0)})) == []
+    assert list(health({"GPS": gps(1.0001)})) == []
+
+
+def test_a_few_late_records_do_not_make_a_wrong_clock() -> None:
+    assert list(health({"GPS": gps(1.0, jitter_s=0.5, seconds=5.0)})) == []
+
+
+def test_a_log_without_a_fix_says_nothing_of_the_clock() -> None:
+    table = gps(1.03)
+    table.fields["GWk"][:] = 0
+    assert list(health({"GPS": table})) == []
+
+
+def test_dropped_records_are_said_with_their_number() -> None:
+    (one,) = health({"DSF": dsf(0, 0, 37, 37)})
+    assert "dropped 37 records" in one.text
+    assert one.time_us == 2_000_000
+    assert list(health({"DSF": dsf(0, 0)})) == []

@@ -6,7 +6,7 @@ from pymavlink.dialects.v20 import ardupilotmega as dialect
 from advisor.decision.inputs import StepInput
 from advisor.mavlink.link.uplink import Uplink
 from advisor.mavlink.wire.framing import Frame
-from advisor.scripts.next_order import end_order, next_order
+from advisor.scripts.table import end_order, next_order
 from tests.rows import row
 
 VEHICLE = (1, 1)

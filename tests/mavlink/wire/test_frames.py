@@ -11,6 +11,7 @@ from pymavlink.dialects.v20 import ardupilotmega as dialect
 from advisor.flight.signals.messages import Columns
 from advisor.mavlink.logs.precompile import warm_up
 from advisor.mavlink.records.record_scan import scan_records
+from advisor.mavlink.wire.checksum import crc16
 from advisor.mavlink.wire.definitions import DEFINITIONS
 from advisor.mavlink.wire.frames import FrameScanner
 from advisor.mavlink.wire.scan import copy_payloads, scan
@@ -191,3 +192,18 @@ def test_warming_up_compiles_what_reading_needs() -> None:
     compiled = len(scan.signatures), len(copy_payloads.signatures), len(scan_records.signatures)
     read(mixed_stream(seed=6, count=20))
     assert (len(scan.signatures), len(copy_payloads.signatures), len(scan_records.signatures)) == compiled
+
+
+@pytest.mark.parametrize("name", DEFINITIONS)
+def test_a_message_is_laid_out_as_pymavlink_has_it(name: str) -> None:
+    ours = DEFINITIONS[name]
+    theirs = dialect.mavlink_map[ours.id]
+    assert theirs.msgname == name
+    assert ours.crc_extra == theirs.crc_extra
+    assert ours.layout.itemsize == theirs.unpacker.size
+    assert list(ours.layout.names or ()) == theirs.ordered_fieldnames
+
+
+def test_the_checksum_gives_the_published_check_value() -> None:
+    # CRC-16/MCRF4XX in the catalogue of parametrised CRC algorithms: check 0x6f91.
+    assert crc16(b"123456789") == 0x6F91

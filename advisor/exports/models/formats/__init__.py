@@ -7,8 +7,8 @@ from pathlib import Path
 from typing import Literal
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.exports.models.exported import Exported
 from advisor.exports.models.flown import FlownModel
+from advisor.exports.models.improvement import Exported
 from advisor.words.problems import ConfigurationError
 
 AxisAsked = Literal["pitch", "lateral", "both"]

@@ -2,9 +2,9 @@
 
 from pathlib import Path
 
-from advisor.exports.models.exported import Exported
 from advisor.exports.models.flown import FlownModel, file_text
 from advisor.exports.models.formats import ModelFormat
+from advisor.exports.models.improvement import Exported
 
 
 class AircraftFormat(ModelFormat):

@@ -28,14 +28,16 @@ from typing import NamedTuple
 from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft.controls import Pairs
 from advisor.aircraft.reference import SIDE_PARAMETERS, Reference
-from advisor.exports.models.exported import Exported, commented, effects_beside
 from advisor.exports.models.flown import FlownModel, SideModel
 from advisor.exports.models.formats import AxisAsked, ModelFormat, refuse_lacking
 from advisor.exports.models.improvement import (
     REFERENCE_KEYS,
+    Exported,
     ExportedServo,
     Improvement,
     air_note,
+    commented,
+    effects_beside,
     missing_reference,
 )
 from advisor.model.axes.lateral import LATERAL

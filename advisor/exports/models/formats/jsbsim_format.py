@@ -16,13 +16,19 @@ from functools import partial
 from pathlib import Path
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.exports.models.exported import Exported, effects_beside
 from advisor.exports.models.flown import FlownModel
 from advisor.exports.models.formats import AxisAsked, ModelFormat
-from advisor.exports.models.improvement import SLOPES, ExportedServo, Improvement, is_told, zero_said
+from advisor.exports.models.improvement import (
+    SLOPES,
+    Exported,
+    ExportedServo,
+    Improvement,
+    effects_beside,
+    is_told,
+    zero_said,
+)
 from advisor.exports.models.jsbsim.axes.side_text import side_text
 from advisor.exports.models.jsbsim.run import Model, measure, model_of
-from advisor.exports.models.jsbsim.search import settled
 from advisor.exports.models.jsbsim.slopes import Request, Slopes
 from advisor.exports.models.jsbsim.source import (
     AXES,
@@ -31,6 +37,7 @@ from advisor.exports.models.jsbsim.source import (
     AddedFunction,
     corrected,
     parse,
+    settled,
     surface_of,
 )
 from advisor.gap.effects import EFFECTS

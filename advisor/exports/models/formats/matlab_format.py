@@ -15,10 +15,9 @@ import numpy as np
 
 from advisor.aircraft.reference import PARAMETERS, SIDE_PARAMETERS
 from advisor.exports.flights.findings import PARAMETER_UNITS
-from advisor.exports.models.exported import Exported, commented, effects_beside
 from advisor.exports.models.flown import FlownModel, SideModel
 from advisor.exports.models.formats import ModelFormat
-from advisor.exports.models.improvement import Improvement, air_note
+from advisor.exports.models.improvement import Exported, Improvement, air_note, commented, effects_beside
 from advisor.gap.result import Value
 from advisor.model.axes.lateral import state_matrix
 from advisor.process.arrays import FloatArray

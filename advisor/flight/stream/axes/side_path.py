@@ -20,7 +20,7 @@ from advisor.flight.maneuvers.axes.side_inputs import (
     named,
 )
 from advisor.flight.maneuvers.events import FlightEvent
-from advisor.flight.maneuvers.loop import ROLL, YAW, Loop
+from advisor.flight.maneuvers.hand_flying import ROLL, YAW, Loop
 from advisor.flight.maneuvers.maneuver import Span
 from advisor.flight.maneuvers.marks import Marks
 from advisor.flight.signals.channels import Decoded

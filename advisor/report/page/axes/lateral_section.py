@@ -6,16 +6,14 @@ from advisor.campaign.state import CampaignState, LateralState
 from advisor.decision.axes.lateral_requirements import GROUPS, SOURCE, LateralTest
 from advisor.model.axes.lateral import LATERAL
 from advisor.model.mil_f_8785c import MANNED
-from advisor.report.facts.decision import INDENT, decisions
+from advisor.report.facts.answers import INDENT, decisions
 from advisor.report.facts.estimates import structure_lines, untold
-from advisor.report.page.blocks import Block, Paragraph, listing, section
-from advisor.report.page.content import Content
+from advisor.report.page.blocks import Block, Content, Paragraph, listing, section
 from advisor.report.page.fits import fit_blocks
 from advisor.report.page.maneuvers import ANCHORS, HEAD, maneuver_row
 from advisor.report.qualities import MODE_NAMES, levels_of, mode_facts, tests_of
-from advisor.report.result_rows import joint_table, structure_table
-from advisor.report.table import Table
-from advisor.words.vehicle_time import CLOCK
+from advisor.report.table import Table, joint_table, structure_table
+from advisor.words.digits import CLOCK
 
 
 @section("roll-and-yaw", "Roll and yaw")

@@ -9,7 +9,7 @@ from scipy.io import savemat
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft_file.read import load_aircraft
-from advisor.analysis.table_log import as_in_tables
+from advisor.analysis.gap import as_in_tables
 from advisor.analysis.whole_flights import read_whole
 from tests.flights import TWO, recorded
 

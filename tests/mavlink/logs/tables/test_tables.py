@@ -6,7 +6,7 @@ from scipy.io import savemat
 
 from advisor.aircraft.aircraft import Aircraft, TableColumns
 from advisor.aircraft.controls import Elevator
-from advisor.analysis.table_log import as_in_tables
+from advisor.analysis.gap import as_in_tables
 from advisor.mavlink.logs.kinds import recognised, refusal
 from advisor.mavlink.logs.logs import open_log
 from advisor.mavlink.logs.tables.names import recognised_columns
