@@ -11,7 +11,7 @@ from functools import cached_property
 import numpy as np
 
 from advisor.model.outputs import OUTPUTS
-from advisor.oem.driven_motion.kalman_filter import driven_filter, steps_of
+from advisor.oem.driven_motion.kalman_filter import filtered_by_each, steps_of
 from advisor.oem.driven_motion.likeliest_noise import COARSE, FINE, likeliest
 from advisor.oem.driven_motion.linear import Linear
 from advisor.oem.driven_motion.noise import GUST, GUST_MEMORY, MEMORY, Noise
@@ -38,31 +38,32 @@ class Rows:
         """Distinct time steps, s, and the index of the step before each row."""
         return steps_of(self.t)
 
-    def terms(self, noise: Noise, start_variance: float) -> tuple[FloatArray, FloatArray]:
-        """Return the whitened residual and the log variance of its innovations, 0 for rows that are still
-        diffuse.
+    def terms(self, noises: Sequence[Noise], start_variance: float) -> tuple[FloatArray, FloatArray]:
+        """Return the whitened residual and the log variance of its innovations with each noise, (n, k) both.
+
+        Both are 0 for rows that are still diffuse.
         """
         motion = self.motion
-        at = self.steps, self.channel, motion.all_seen, noise.driving(motion, start_variance)
-        gains = driven_filter(*at, noise.white[self.channel] ** 2, noise.coloured, noise.memory_s)
-        decided = gains.std**2 < 0.1 * DIFFUSE
-        white = gains.innovations(self.residual[:, None])[:, 0]
-        return np.where(decided, white, 0.0), np.where(decided, 2.0 * np.log(gains.std), 0.0)
+        driving = [noise.driving(motion, start_variance) for noise in noises]
+        white, coloured = np.array([(noise.white, noise.coloured) for noise in noises]).swapaxes(0, 1)
+        at, memory_s = (self.steps, self.channel, motion.all_seen), np.array([n.memory_s for n in noises])
+        white, std = filtered_by_each(*at, driving, white**2, coloured, memory_s, self.residual)
+        decided = std**2 < 0.1 * DIFFUSE
+        return np.where(decided, white, 0.0), np.where(decided, 2.0 * np.log(std), 0.0)
 
 
 def terms_of(
-    rows: Sequence[Rows], noise: Noise, start_variance: float = DIFFUSE
+    rows: Sequence[Rows], noises: Sequence[Noise], start_variance: float = DIFFUSE
 ) -> tuple[FloatArray, FloatArray]:
-    """Return the whitened residuals of manoeuvres and the log variances of their innovations."""
-    parts = [part.terms(noise, start_variance) for part in rows]
-    white, volume = (np.concatenate(part) for part in zip(*parts, strict=True))
+    """Return the whitened residuals of manoeuvres and the log variances of their innovations, (n, k) both."""
+    white, volume = np.concatenate([part.terms(noises, start_variance) for part in rows], axis=1)
     return white, volume
 
 
 def cost_of(rows: Sequence[Rows], noise: Noise, start_variance: float = DIFFUSE) -> float:
     """Return -2 log likelihood of residuals, summed over the manoeuvres, up to a constant."""
-    white, volume = terms_of(rows, noise, start_variance)
-    return float(np.sum(volume) + white @ white)
+    white, volume = terms_of(rows, [noise], start_variance)
+    return float(np.sum(volume) + np.sum(white**2))
 
 
 KNOTS_S = 0.1
@@ -107,7 +108,7 @@ def find_turbulence(rows: Sequence[Rows], white: FloatArray, start_variance: flo
     instruments = [*there, *(len(white) + c for c in there), MEMORY]
 
     def descend(start: Noise, free: Sequence[int], settled: float = FINE) -> tuple[Noise, float]:
-        noise = likeliest(lambda trial: terms_of(rows, trial, start_variance), start, free, settled)
+        noise = likeliest(lambda noises: terms_of(rows, noises, start_variance), start, free, settled)
         return noise, cost_of(rows, noise, start_variance)
 
     rms = spread_of(rows)

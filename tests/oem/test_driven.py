@@ -13,7 +13,7 @@ from advisor.campaign.single_maneuver import assess, cautions_of
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.oem import estimator
 from advisor.oem.driven_motion.estimate import Driven, driven
-from advisor.oem.driven_motion.kalman_filter import driven_filter
+from advisor.oem.driven_motion.kalman_filter import driven_filter, filtered_by_each
 from advisor.oem.driven_motion.likeliest_noise import first_noise
 from advisor.oem.driven_motion.setting import Model
 from advisor.oem.estimate import Estimate
@@ -169,6 +169,25 @@ def test_one_column_has_the_innovations_that_it_has_among_several() -> None:
     columns, order = rng.standard_normal((n, 3)), rng.permutation(n)
     among = gains.innovations(columns, order)
     assert np.allclose(gains.innovations(columns[:, 1:2], order), among[:, 1:2], rtol=1e-9, atol=1e-9)
+
+
+def test_noises_abreast_give_the_innovations_that_each_gives_alone() -> None:
+    rng, n = np.random.default_rng(3), 300
+    kind, channel = np.tile([1, 0, 2], n // 3), np.tile([0, 1, 0], n // 3)
+    at = (np.array([0.0, 0.02, 0.05]), kind), channel, np.array([[1.0, 0.0], [0.3, 1.0]])
+    column, sizes = rng.standard_normal(n), rng.uniform(0.5, 2.0, (11, 6))
+    driving = [
+        (np.array([[-x, 1.0], [-9.0, -2.0]]), np.array([y, 0.2]), np.array([0.0, y])) for x, y, *_ in sizes
+    ]
+    white, coloured, memory_s = 1e-2 * sizes[:, 2:4], 0.1 * sizes[:, 3:5], sizes[:, 5]
+    together = filtered_by_each(*at, driving, white, coloured, memory_s, column)
+    apart = [
+        filtered_by_each(
+            *at, driving[k : k + 1], white[k : k + 1], coloured[k : k + 1], memory_s[k : k + 1], column
+        )
+        for k in range(len(sizes))
+    ]
+    assert np.allclose(together, np.concatenate(apart, axis=-1), rtol=1e-9, atol=1e-9)
 
 
 def test_in_moving_air_the_estimate_has_unknown_forces_and_in_still_air_none() -> None:

@@ -4,6 +4,7 @@ The states of the motion come first, then one state for the coloured noise of ea
 of time, so that every update is scalar.
 """
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -17,6 +18,8 @@ within half of this time.
 """
 _LONGEST = 0.25
 """Numerical: largest product of a rate of the motion and a time step for a series of third order."""
+_ABREAST = 8
+"""Numerical: number of noises that fills the processor's vectors."""
 
 
 @kernel(error_model="numpy", fastmath={"contract"})
@@ -158,6 +161,36 @@ def driven_filter(
     return Gains(moves, keep, kind, channel, seen, gain, std)
 
 
+def filtered_by_each(
+    steps: tuple[FloatArray, IntArray],
+    channel: IntArray,
+    seen: FloatArray,
+    driving: Sequence[tuple[FloatArray, FloatArray, FloatArray]],
+    white: FloatArray,
+    coloured: FloatArray,
+    memory_s: FloatArray,
+    column: FloatArray,
+) -> tuple[FloatArray, FloatArray]:
+    """Return a column's innovations (n, k) with each of k noises over their standard deviations, and these.
+
+    The arguments are those of ``driven_filter`` for each noise; ``white`` is by output, shape (k, o). Noises
+    that pass abreast take a third of the time that they take one after another.
+    """
+    k, (lengths, kind) = len(driving), steps
+    if k == 1:
+        gains = driven_filter(
+            steps, channel, seen, driving[0], white[0, channel], coloured[0], float(memory_s[0])
+        )
+        return gains.innovations(column[:, None]), gains.std[:, None]
+    lanes = np.resize(np.arange(k), -(-k // _ABREAST) * _ABREAST)
+    matrix, begun, drive = (
+        np.stack([each[part] for each in driving], axis=-1)[..., lanes] for part in range(3)
+    )
+    keep, apart = np.exp(-lengths[:, None] / memory_s[lanes]), (white.T[:, lanes], coloured.T[:, lanes] ** 2)
+    out, std = _filtered(lengths, keep, kind, channel, matrix, begun, drive, seen, *apart, column)
+    return out[:, :k], std[:, :k]
+
+
 @kernel(error_model="numpy", fastmath={"contract"})
 def _gains(
     lengths: FloatArray,
@@ -250,3 +283,106 @@ def _passed_alone(gains: Gains, column: FloatArray, order: IntArray) -> FloatArr
             x[a] += gains.gain[i, a] * left
         out[row] = left / gains.std[i]
     return out
+
+
+@kernel(error_model="numpy", fastmath={"contract"})
+def _turned(to: FloatArray, step: FloatArray, of: FloatArray) -> None:
+    """Write the product (a, b, k) of transitions (a, c, k) and the first rows of ``of`` (c or more, b, k)."""
+    for a in range(to.shape[0]):
+        for b in range(to.shape[1]):
+            for j in range(to.shape[2]):
+                to[a, b, j] = 0.0
+        for c in range(step.shape[1]):
+            for b in range(to.shape[1]):
+                for j in range(to.shape[2]):
+                    to[a, b, j] += step[a, c, j] * of[c, b, j]
+
+
+@kernel(error_model="numpy", fastmath={"contract"})
+def _advanced(
+    P: FloatArray, moved: FloatArray, step: FloatArray, fresh: FloatArray, keep: FloatArray, own: FloatArray
+) -> None:
+    """Advance ``P`` of ``_filtered`` by a step; ``moved``, shape (s, n + 1, k), is work space."""
+    (s, last, k), n = moved.shape, len(P)
+    _turned(moved, step, P)
+    for a in range(s):
+        for b in range(last):
+            for j in range(k):
+                P[a, b, j] = fresh[a, b, j] if b < s else moved[a, b, j]
+        for b in range(s):
+            for c in range(s):
+                for j in range(k):
+                    P[a, b, j] += moved[a, c, j] * step[b, c, j]
+    for b in range(s, n):
+        for a in range(n):
+            for j in range(k):
+                P[a, b, j] *= keep[j] if a < s else keep[j] * keep[j]
+        for j in range(k):
+            P[b, b, j] += own[b - s, j] * (1.0 - keep[j] * keep[j])
+            P[b, n, j] *= keep[j]
+
+
+@kernel(error_model="numpy", fastmath={"contract"})
+def _showing(P: FloatArray, seen: FloatArray, own: int, measured: float, gain: FloatArray) -> None:
+    """Write the covariance of an output with all in ``P`` of ``_filtered``, then minus its innovation."""
+    n, k = len(P), P.shape[2]
+    for a in range(n):
+        for j in range(k):
+            gain[a, j] = P[a, own, j]
+    for j in range(k):
+        gain[n, j] = P[own, n, j] - measured
+    for b in range(len(seen)):
+        for a in range(n + 1 if seen[b] != 0.0 else 0):
+            for j in range(k):
+                gain[a, j] += seen[b] * P[b, a, j]
+
+
+@kernel(error_model="numpy", fastmath={"contract"})
+def _filtered(
+    lengths: FloatArray,
+    keep: FloatArray,
+    kind: IntArray,
+    channel: IntArray,
+    matrix: FloatArray,
+    begun: FloatArray,
+    drive: FloatArray,
+    seen: FloatArray,
+    white: FloatArray,
+    own: FloatArray,
+    column: FloatArray,
+) -> tuple[FloatArray, FloatArray]:
+    """Return the innovations (n, k) of a column (n,) over their standard deviations, and these.
+
+    The last index of an argument that depends on the noise is that of the noise; ``own`` holds the variances
+    of the coloured noise. ``P`` is the covariance, without the part that follows from symmetry, and its last
+    column is that of the states themselves.
+    """
+    (s, k), rows = drive.shape, len(channel)
+    n = s + len(seen)
+    P, moved, gain = np.zeros((n, n + 1, k)), np.empty((s, n + 1, k)), np.empty((n + 1, k))
+    steps, fresh = np.empty((len(lengths), s, s, k)), np.empty((len(lengths), s, s, k))
+    out, std, share = np.empty((rows, k)), np.empty((rows, k)), np.empty(k)
+    for j in range(k):
+        for u in range(len(lengths)):
+            over = _over(lengths[u], np.ascontiguousarray(matrix[:, :, j]), drive[:, j])
+            steps[u, :, :, j], fresh[u, :, :, j] = over
+        for a in range(n):
+            P[a, a, j] = begun[a, j] if a < s else own[a - s, j]
+    for i in range(rows):
+        u, c = kind[i], channel[i]
+        if lengths[u] > 0.0:
+            _advanced(P, moved, steps[u], fresh[u], keep[u], own)
+        _showing(P, seen[c], s + c, column[i], gain)
+        for j in range(k):
+            variance = white[c, j] + gain[s + c, j]
+            for b in range(s):
+                variance += seen[c, b] * gain[b, j]
+            std[i, j] = np.sqrt(variance)
+            out[i, j] = -gain[n, j] / std[i, j]
+        for a in range(n):
+            for j in range(k):
+                share[j] = gain[a, j] / std[i, j] ** 2
+            for b in range(0 if a < s else s, n + 1):
+                for j in range(k):
+                    P[a, b, j] -= share[j] * gain[b, j]
+    return out, std

@@ -10,8 +10,8 @@ from advisor.oem.driven_motion.noise import Noise
 from advisor.oem.driven_motion.setting import Setting
 from advisor.process.arrays import FloatArray
 
-Terms = Callable[[Noise], tuple[FloatArray, FloatArray]]
-"""Whitened residual and log variance of its innovations, both of shape (n,), by the noise."""
+Terms = Callable[[Sequence[Noise]], tuple[FloatArray, FloatArray]]
+"""Whitened residual and log variance of its innovations, both of shape (n, k), by k noises."""
 MOST_MANEUVERS = 4
 """Number of the newest manoeuvres for the noise estimate. More manoeuvres would change the noise estimate
 little."""
@@ -46,7 +46,7 @@ def noise_of(setting: Setting, noise: Noise, newest: int = MOST_MANEUVERS, settl
     """Return the likeliest noise near another one, by the residuals of the ``newest`` manoeuvres."""
     outputs, count = len(noise.white), len(noise.logarithms)
     free = [*setting.measured, *(outputs + setting.measured), *range(2 * outputs, count)]
-    return likeliest(lambda trial: setting.terms(trial, newest), noise, free, settled)
+    return likeliest(lambda noises: setting.terms(noises, newest), noise, free, settled)
 
 
 def _starts(setting: Setting) -> Iterator[Noise]:
@@ -80,20 +80,20 @@ def likeliest(terms: Terms, noise: Noise, free: Sequence[int], settled: float = 
     Parameters
     ----------
     terms
-        Function that returns the whitened residual and the log variance of its innovations.
+        Function that returns the whitened residual and the log variance of its innovations with each noise.
     free
         Indices of the logarithms that move.
     settled
         Decrease of -2 log likelihood by a step below which the search ends.
     """
     x = noise.logarithms
-    white, volume = terms(noise)
-    cost = float(np.sum(volume) + white @ white)
+    moves = _DIFFERENCE * np.vstack([np.zeros(len(x)), np.eye(len(x))[free]])
     for _ in range(_ROUNDS):
-        moved = [terms(noise.at(x + move)) for move in _DIFFERENCE * np.eye(len(x))[free]]
-        by_white, by_volume = np.array(moved).transpose(1, 2, 0)
-        by_white = (by_white - white[:, None]) / _DIFFERENCE
-        by_volume = (by_volume - volume[:, None]) / _DIFFERENCE
+        (white, by_white), (volume, by_volume) = (
+            (part[:, 0], (part[:, 1:] - part[:, :1]) / _DIFFERENCE)
+            for part in terms([noise.at(x + move) for move in moves])
+        )
+        cost = float(np.sum(volume) + white @ white)
         gradient = by_volume.sum(axis=0) + 2.0 * by_white.T @ white
         innovation = by_white + 0.5 * white[:, None] * by_volume
         information = by_volume.T @ by_volume + 2.0 * innovation.T @ innovation
@@ -105,13 +105,13 @@ def likeliest(terms: Terms, noise: Noise, free: Sequence[int], settled: float = 
                 return noise
             trial = x.copy()
             trial[free] += step
-            white, volume = terms(noise.at(trial))
-            reached = float(np.sum(volume) + white @ white)
+            there, volume = terms([noise.at(trial)])
+            reached = float(np.sum(volume) + np.sum(there**2))
             if reached < cost:
                 break
         else:
             return noise
-        noise, gained, cost, x = noise.at(trial), cost - reached, reached, trial
+        noise, gained, x = noise.at(trial), cost - reached, trial
         if gained < settled:
             break
     return noise

@@ -1,6 +1,6 @@
 """Residuals, sensitivities and linear motions of a problem at one setting of all parameters."""
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cache
 from typing import Any, NamedTuple
@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from advisor.model.response import Index
-from advisor.oem.driven_motion.kalman_filter import driven_filter, steps_of
+from advisor.oem.driven_motion.kalman_filter import driven_filter, filtered_by_each, steps_of
 from advisor.oem.driven_motion.linear import DrivenMotion, Linear
 from advisor.oem.driven_motion.noise import RANGE, Noise
 from advisor.oem.extra import Extra, Parameter
@@ -70,40 +70,36 @@ class Setting:
         own, common = self.sensitivities[:, self.assembly.own], self.sensitivities[:, self.assembly.common]
         return np.column_stack([self.residual, own, common, self.extra.columns])
 
-    def innovations(
-        self, columns: FloatArray, noise: Noise, newest: int = 0
-    ) -> Iterator[tuple[Index, FloatArray, FloatArray]]:
-        """Yield rows, innovations over their standard deviations, and the standard deviations, for each
-        manoeuvre.
-
-        The innovations (n, k) are those of ``columns`` (N, k). Only the ``newest`` manoeuvres count; 0 means
-        all.
-        """
-        white = np.maximum(noise.white, self.floor)[self.measured] ** 2
-        coloured = noise.coloured[self.measured]
-        for record in self.records[-newest:]:
-            at = record.steps, record.channel, record.seen, noise.driving(record.motion)
-            gains = driven_filter(*at, white[record.channel], coloured, noise.memory_s)
-            yield record.order, gains.innovations(columns[record.order]), gains.std
-
     def whitened(self, columns: FloatArray, noise: Noise) -> tuple[FloatArray, float]:
         """Return the whitened ``columns`` (N, k) and the log determinant."""
-        white, volume = np.empty(columns.shape), 0.0
-        for order, own, std in self.innovations(columns, noise):
-            white[order] = own
-            volume += 2.0 * float(np.sum(np.log(std)))
-        return white, volume
+        out, volume = np.empty(columns.shape), 0.0
+        white = np.maximum(noise.white, self.floor)[self.measured] ** 2
+        coloured = noise.coloured[self.measured]
+        for record in self.records:
+            at = record.steps, record.channel, record.seen, noise.driving(record.motion)
+            gains = driven_filter(*at, white[record.channel], coloured, noise.memory_s)
+            out[record.order] = gains.innovations(columns[record.order])
+            volume += 2.0 * float(np.sum(np.log(gains.std)))
+        return out, volume
 
-    def terms(self, noise: Noise, newest: int = 0) -> tuple[FloatArray, FloatArray]:
-        """Return the whitened residual and the log variance of its innovations, both of shape (n,)."""
-        parts = [(own[:, 0], std) for _, own, std in self.innovations(self.residual[:, None], noise, newest)]
-        white, std = (np.concatenate(part) for part in zip(*parts, strict=True))
-        return white, 2.0 * np.log(std)
+    def terms(self, noises: Sequence[Noise], newest: int = 0) -> tuple[FloatArray, FloatArray]:
+        """Return the whitened residual and the log variance of its innovations with each noise, (n, k) both.
+
+        Only the ``newest`` manoeuvres count; 0 means all.
+        """
+        white = np.maximum([noise.white for noise in noises], self.floor)[:, self.measured] ** 2
+        coloured = np.array([noise.coloured for noise in noises])[:, self.measured]
+        memory_s, parts = np.array([noise.memory_s for noise in noises]), []
+        for record in self.records[-newest:]:
+            at = record.steps, record.channel, record.seen, [noise.driving(record.motion) for noise in noises]
+            parts.append(filtered_by_each(*at, white, coloured, memory_s, self.residual[record.order]))
+        out, std = np.concatenate(parts, axis=1)
+        return out, 2.0 * np.log(std)
 
     def cost(self, noise: Noise, newest: int = 0) -> float:
         """Return -2 log likelihood of the residual, up to a constant."""
-        white, volume = self.terms(noise, newest)
-        return float(np.sum(volume) + white @ white)
+        white, volume = self.terms([noise], newest)
+        return float(np.sum(volume) + np.sum(white**2))
 
 
 @dataclass(frozen=True, slots=True)
