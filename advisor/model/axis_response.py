@@ -16,6 +16,8 @@ from advisor.process.compiled import kernel
 
 LARGEST = 1e9
 """Sum of the states' magnitudes above which the model has diverged."""
+WIDE = 16
+"""Numerical: multiple of the length of the sensitivities' rows, which fills the processor's vectors."""
 
 
 class AxisGrid(NamedTuple):
@@ -109,7 +111,9 @@ def _respond_in(
     n, u, begin, end = len(initial), start.shape[1], grid.first[m], grid.first[m + 1]
     powers, matrix, whole = np.empty(len(place)), np.empty((n, n + u + 1)), np.empty((n, n + u + 3))
     z, circle = np.zeros((TERMS, n + u + 3)), np.zeros((TERMS, 2))
-    by, terms = np.zeros((n, g.shape[1])), np.empty((2, n, g.shape[1]))
+    # Rows of full vectors: the processor takes the rest of a row number by number.
+    wide = -(-g.shape[1] // WIDE) * WIDE
+    by, terms = np.zeros((n, wide)), np.empty((2, n, wide))
     z[0, n + u] = 1.0
     for i in range(n):
         z[0, i] = theta[initial[i]]
@@ -139,7 +143,7 @@ def _respond_in(
             bend(order, bank, yaw, z, whole)
             carry(
                 h, order, initial, whole, matrix, place, powers, turning, known, z, changed_start,
-                changed_slope, e, by, terms,
+                changed_slope, e, g.shape[1] - changed.shape[1], by, terms,
             )  # fmt: skip
         size = 0.0
         for i in range(n):
@@ -216,7 +220,7 @@ def _read(
     With an open number the term is a derivative by that number, and no part of the output.
     """
     i, number = seen[term, 1], seen[term, 3]
-    n, width, causes = len(initial), by.shape[1], changed.shape[1]
+    n, width, causes = len(initial), g.shape[1], changed.shape[1]
     part = z[0, i] if i < n else 0.0
     if i >= n:
         for j in range(matrix.shape[1]):

@@ -109,9 +109,9 @@ def bend(order: int, bank: int, yaw: int, z: FloatArray, whole: FloatArray) -> N
 def carry(
     h: float, order: int, initial: tuple[int, ...], whole: FloatArray, matrix: FloatArray, place: Index,
     powers: FloatArray, turning: Index, known: FloatArray, z: FloatArray, changed_start: FloatArray,
-    changed_slope: FloatArray, e: int, by: FloatArray, terms: FloatArray,
+    changed_slope: FloatArray, e: int, first: int, by: FloatArray, terms: FloatArray,
 ) -> None:  # fmt: skip
-    """Advance the sensitivities ``by`` (n, w) of the states over one step."""
+    """Advance the sensitivities ``by`` (n, w) of the states over one step, with causes from ``first`` on."""
     n, width, causes, inputs = len(initial), by.shape[1], changed_start.shape[1], changed_start.shape[2]
     for i in range(n):
         for k in range(width):
@@ -132,7 +132,7 @@ def carry(
                 for j in range(inputs):
                     move = factor * (changed_start[e, k, j] if m == 0 else h * changed_slope[e, k, j])
                     for i in range(n):
-                        terms[then, i, width - causes + k] += move * matrix[i, n + j]
+                        terms[then, i, first + k] += move * matrix[i, n + j]
         for i in range(n):
             for k in range(width):
                 by[i, k] += terms[then, i, k]
