@@ -89,11 +89,11 @@ def driven(
     prior = model.prior(here)
     still = weighing.volume + System.of(here, weighing.forward(here.columns), prior).misfit
     noise = near or first_noise(here)
-    white, volume = here.whitened(here.columns, noise)
-    gain = 0.5 * (still - volume - System.of(here, white, prior).misfit)
+    step = Step.of(model, here, noise)
+    gain = 0.5 * (still - step.cost + step.promise)
     if not gain > CLEARLY:
         return None
-    return _descended(model, start, here, noise, gain, searched=near is None)
+    return _descended(model, start, here, noise, step, gain, searched=near is None)
 
 
 def driven_without_alpha(
@@ -112,17 +112,17 @@ def driven_without_alpha(
     air = None if here is None else moving_air(here)
     if here is None or air is None or not air.is_air:
         return None
-    return _descended(model, start, here, air.noise, air.gain, searched=None)
+    step = Step.of(model, here, air.noise)
+    return _descended(model, start, here, air.noise, step, air.gain, searched=None)
 
 
 def _descended(
-    model: Model, start: Solution, here: Setting, noise: Noise, gain: float, searched: bool | None
+    model: Model, start: Solution, here: Setting, noise: Noise, step: Step, gain: float, searched: bool | None
 ) -> Driven | None:
-    """Return the estimate from a setting; None if the search diverges.
+    """Return the estimate from a setting and its step; None if the search diverges.
 
     ``searched`` states whether the noise is that of the setting; None keeps the noise.
     """
-    step = Step.of(model, here, noise)
     for _ in range(ROUNDS):
         if searched is False and step.pending < FAR:
             noise, searched = noise_of(here, noise), True

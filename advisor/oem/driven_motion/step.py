@@ -29,6 +29,8 @@ class Step(NamedTuple):
     """Largest step of a common parameter, in standard deviations."""
     promise: float
     """Decrease of -2 log likelihood that the normal equations promise."""
+    cost: float
+    """-2 log likelihood of the residual at the setting, up to a constant."""
 
     @classmethod
     def of(cls, model: Model, here: Setting, noise: Noise) -> "Step":
@@ -37,10 +39,10 @@ class Step(NamedTuple):
         A parameter that would leave its range stops at the range's end, and the others are solved again.
         """
         parameters = model.parameters
-        white, _ = here.whitened(here.columns, noise)
+        white, volume = here.whitened(here.columns, noise)
         system = System.of(here, white, model.prior(here))
         if not np.all(np.isfinite(system.information)):
-            return cls(np.empty(0), (), np.inf, 0.0)
+            return cls(np.empty(0), (), np.inf, 0.0, np.inf)
         derivatives = len(here.assembly.common)
         held: dict[int, float] = {}
         step = system.step(held)
@@ -58,8 +60,9 @@ class Step(NamedTuple):
             np.asarray(np.linalg.lstsq(triangle, basis.T @ (residual - columns @ step), rcond=1e-10)[0])
             for basis, triangle, columns, residual in system.own
         ]
-        promise = float(np.sum(white[:, 0] ** 2)) - system.misfit
-        return cls(step, own, float(np.max(np.abs(step) / std)), promise)
+        squares = float(np.sum(white[:, 0] ** 2))
+        pending = float(np.max(np.abs(step) / std))
+        return cls(step, own, pending, squares - system.misfit, volume + squares)
 
     def taken(self, model: Model, here: Setting, noise: Noise) -> Setting | None:
         """Return the likeliest setting along the step; None if the likelihood decreases along all of it.
@@ -71,11 +74,11 @@ class Step(NamedTuple):
         prior = model.prior(here)
         common, own = here.assembly.common, here.assembly.own
 
-        def cost(setting: Setting) -> float:
+        def penalty(setting: Setting) -> float:
             apart = (setting.shared - prior.mean)[common] / prior.std[common]
-            return setting.cost(noise) + setting.penalty + float(apart @ apart)
+            return setting.penalty + float(apart @ apart)
 
-        begun = lowest = cost(here)
+        begun = lowest = self.cost + penalty(here)
         best = None
         for scale in _SCALES:
             shared, local = here.shared.copy(), here.local.copy()
@@ -83,7 +86,7 @@ class Step(NamedTuple):
             local[:, own - len(here.assembly.names.shared)] += scale * np.array(self.own)
             problem = moved_by(scale * self.common[len(common) :], here.problem, model.parameters)
             trial = model.at(problem, shared, local)
-            reached = np.inf if trial is None else cost(trial)
+            reached = np.inf if trial is None else trial.cost(noise) + penalty(trial)
             if reached < lowest:
                 best, lowest = trial, reached
             elif best is not None:
