@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
+from itertools import islice
 from typing import NamedTuple
 
 import numpy as np
@@ -64,7 +65,7 @@ def diagnose_axis(case: Case, prior: FieldPrior = FIELD) -> Diagnosis | None:
     remains = dict(waterfall)
     causes = tuple(
         replace(cause, gap_after=remains.get(cause.name, np.nan))
-        for cause in tuple(_causes(case, decision, final, as_given))[:MOST_CAUSES]
+        for cause in islice(_causes(case, decision, final, as_given), MOST_CAUSES)
     )
     verdict = verdict_of(weights)
     where = where_of(case.axis, weights.evidence, causes if verdict == "effect" else ())
