@@ -89,7 +89,7 @@ def examine(
     """
     progress("checking the angle of attack against the motion", 0.0)
     maneuvers = [as_stamped(m) for m in maneuvers]
-    aircraft = _with_speed(usable_of(maneuvers), aircraft)
+    aircraft = with_speed(usable_of(maneuvers), aircraft)
     offset = aircraft.effects.get("alpha_bias", {}).get("bias_rad", 0.0)
     maneuvers = alpha_by_motion([_without_offset(m, offset) for m in maneuvers], aircraft)
     flights = prepare(maneuvers, aircraft)
@@ -156,7 +156,7 @@ def _without_dead_pitot(maneuver: Maneuver) -> Maneuver:
     return replace(maneuver, channels={k: c for k, c in maneuver.channels.items() if k != "airspeed"})
 
 
-def _with_speed(maneuvers: Sequence[Maneuver], aircraft: Aircraft) -> Aircraft:
+def with_speed(maneuvers: Sequence[Maneuver], aircraft: Aircraft) -> Aircraft:
     """Return the aircraft with the air speed that the motion implies, if file and log state none."""
     if aircraft.stated_airspeed_m_s or all(measures_speed(m) for m in maneuvers):
         return aircraft

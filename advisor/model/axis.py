@@ -87,6 +87,52 @@ class Read(NamedTuple):
     sign: float = 1.0
 
 
+class Moment(NamedTuple):
+    """A part of a state's rate that is proportional to a product of known signals."""
+
+    state: str
+    signals: tuple[str, ...]
+    mean: float = 0.0
+    std: float = np.inf
+    """Mean and standard deviation of the prior of the factor; infinite for a factor that no aircraft has by
+    nature."""
+
+
+class Change(NamedTuple):
+    """An effect that changes derivatives during the flight."""
+
+    effect: str
+    names: tuple[str, ...]
+    """Parameters of the effect."""
+    weights: Callable[[Mapping[str, float]], Sequence[Mapping[str, float]]]
+    """Function of the derivatives that returns for each parameter v the derivatives that it multiplies by
+    1 + w·v, each with its weight w."""
+    std: float
+    bounds: tuple[tuple[float, float], ...]
+    divides: bool = False
+    """Whether the derivatives are divided, as by a larger mass."""
+    has_name: bool = True
+    """Whether the effect is one of the catalogue; else it is a law without a name."""
+
+
+class Curve(NamedTuple):
+    """A disturbance of one block by functions of the motion, in which the outputs are linear."""
+
+    effect: str
+    block: str
+    names: tuple[str, ...]
+    """Parameters of the effect, one for each function."""
+    forms: Callable[[Mapping[str, FloatArray], Mapping[str, float]], Sequence[FloatArray]]
+    """Functions of states, inputs, readings and rates relative to trim, and of the derivatives' sizes. A rate
+    has the name of its state followed by an apostrophe, and a reading that of its block."""
+    std: Callable[[Mapping[str, float], Mapping[str, float]], Sequence[float]]
+    """Function of the derivatives' sizes and of the largest motion that returns the prior widths."""
+    fixed: Mapping[str, float] = {}
+    """Further parameters of the effect, which are not searched for."""
+    has_name: bool = True
+    """Whether the effect is one of the catalogue; else it is a law without a name."""
+
+
 class Prior(NamedTuple):
     """Means and standard deviations of the priors of the derivatives, in their order; infinite without."""
 
@@ -150,6 +196,26 @@ class Axis:
     """Outputs that every record has."""
     given: tuple[str, ...] = ("airspeed",)
     """Signals of a record that the known factors need."""
+    optional: tuple[str, ...] = ()
+    """Those of them that are zero where a record lacks them."""
+    body: str = ""
+    """Specific force along the body, by which the hidden angle turns the measured force across the path."""
+    moments: Mapping[Place, Moment] = field(default_factory=dict)
+    """Parts of the rates by known signals, by the place of their factors."""
+    changes: Mapping[str, Change] = field(default_factory=dict)
+    """Effects that change derivatives between manoeuvres, by the first part of their places."""
+    curves: tuple[Curve, ...] = ()
+    """Nonlinear effects and laws; without them the laws are curves of each state and control."""
+    computed: Mapping[Place, tuple[float, tuple[float, float]]] = field(default_factory=dict)
+    """Prior standard deviation and bounds of each instrument of a hidden state that an autopilot computes."""
+    filters: Mapping[str, float] = field(default_factory=dict)
+    """Prior standard deviation of the delay by which an autopilot's filters make an output late, s."""
+    relative_to: float = 0.1
+    """Least size of a derivative for its relative error, over the derivative's natural size."""
+    arms_are_causes: bool = False
+    """Whether the arm of a vane is an effect of the diagnosis although the aircraft file states none."""
+    blocks: Mapping[str, str] = field(default_factory=dict)
+    """Block of the diagnosis of each control; a control without one is a block itself."""
     floor: Mapping[str, float] = field(default_factory=dict)
     """Least standard deviation of each output, SI."""
     letters: Mapping[str, str] = field(default_factory=dict)
@@ -283,7 +349,8 @@ class Axis:
         columns = (*self.states, *self.inputs)
         aerodynamic = np.zeros((n, n + u))
         for value, (row, column, _) in zip(theta, self.place, strict=False):
-            aerodynamic[row, column] += value
+            if column < n + u:
+                aerodynamic[row, column] += value
         matrix = aerodynamic[:, :n].copy()
         # About wings-level flight the sine is the bank itself, and the cosine is one.
         level = {SINE: self.bank, TURN: self.yaw}

@@ -47,6 +47,8 @@ class AxisGrid(NamedTuple):
     """(E, k, u) derivatives of ``slope``."""
     known: FloatArray
     """(E, f) known factors, on the step or at the event; the first is 1."""
+    factor: FloatArray
+    """(E, d) further factor of each derivative and constant on the step; (0, d) for none."""
     forced: FloatArray
     """(E, n) further known part of the rates on the step, which the outputs see too; (0, n) for none."""
     turning: Index
@@ -119,8 +121,8 @@ def _respond_in(
         z[0, i] = theta[initial[i]]
         by[i, initial[i]] = 1.0
     for e in range(begin, end):
-        if e == begin or _changes(ratio, grid.forced, e):
-            _fill(place, ratio[e], theta, powers, matrix)
+        if e == begin or _changes(ratio, grid.forced, grid.factor, e):
+            _fill(place, ratio[e], grid.factor, e, theta, powers, matrix)
             _force(grid.forced, e, matrix)
         for j in range(u):
             z[0, n + j] = inputs[e, j]
@@ -156,7 +158,10 @@ def _respond_in(
 
 
 @kernel()
-def _fill(place: Index, ratio: float, theta: FloatArray, powers: FloatArray, matrix: FloatArray) -> None:
+def _fill(
+    place: Index, ratio: float, factor: FloatArray, e: int, theta: FloatArray, powers: FloatArray,
+    matrix: FloatArray,
+) -> None:  # fmt: skip
     """Write the parameters' factors (d,) at an air speed ratio, and the matrix (n, n + u + 1) of the
     parameters."""
     matrix[:] = 0.0
@@ -164,13 +169,15 @@ def _fill(place: Index, ratio: float, theta: FloatArray, powers: FloatArray, mat
         powers[k] = 1.0
         for _ in range(place[k, 2]):
             powers[k] *= ratio
+        if len(factor) > 0:
+            powers[k] *= factor[e, k]
         matrix[place[k, 0], place[k, 1]] += theta[k] * powers[k]
 
 
 @kernel()
-def _changes(ratio: FloatArray, forced: FloatArray, e: int) -> bool:
+def _changes(ratio: FloatArray, forced: FloatArray, factor: FloatArray, e: int) -> bool:
     """Return whether the matrix of the parameters differs from that of the event before."""
-    differs: bool = ratio[e] != ratio[e - 1] or len(forced) > 0
+    differs: bool = ratio[e] != ratio[e - 1] or len(forced) > 0 or len(factor) > 0
     return differs
 
 

@@ -102,7 +102,7 @@ def test_the_short_period_described_as_an_axis_is_its_closed_form():
     # α̇ by α, q, δe; q̇ by α, q, δe; then the constants of both.
     place = np.array([(0, 0, 1), (0, 1, 0), (0, 4, 1), (1, 0, 2), (1, 1, 1), (1, 4, 2), (0, 5, 1), (1, 5, 2)])
     grid = AxisGrid(
-        forced=np.empty((0, 4)),
+        factor=np.empty((0, 0)), forced=np.empty((0, 4)),
         first=np.array([0, events]), step_s=closed.grid.step_s[closed.grid.kind],
         ratio=np.ones(events), inputs=elevator.y[:, None], start=elevator.y[:, None],
         slope=closed.grid.slope[:, None], changed=still_causes, changed_start=still_causes,
@@ -121,7 +121,7 @@ def test_a_step_of_any_length_is_the_exponential_of_its_matrix(step_s):
     a, first = rng.uniform(-2.5, 2.5, (4, 4)), rng.uniform(-1.0, 1.0, 4)
     none = np.zeros((2, 0, 1))
     grid = AxisGrid(
-        forced=np.empty((0, 4)),
+        factor=np.empty((0, 0)), forced=np.empty((0, 4)),
         first=np.array([0, 2]), step_s=np.full(2, step_s), ratio=np.ones(2), inputs=np.ones((2, 1)),
         start=np.ones((2, 1)), slope=np.zeros((2, 1)), changed=none, changed_start=none, changed_slope=none,
         known=np.ones((2, 1)), turning=np.zeros((0, 5), np.int64),

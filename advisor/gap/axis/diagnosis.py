@@ -13,7 +13,7 @@ from advisor.gap.axis.evidence import colour_share, information_of, posterior_at
 from advisor.gap.axis.fit import Fit
 from advisor.gap.axis.flight import AxisFlight, AxisModel
 from advisor.gap.axis.gusts import coloured_likelihood
-from advisor.gap.axis.laws import axis_laws, lacking
+from advisor.gap.axis.laws import axis_laws, curves_of, lacking
 from advisor.gap.axis.measure import measured, sums
 from advisor.gap.axis.models import Case, base_of, free_near
 from advisor.gap.fitting.prior import ERROR_IF_RIGHT, ERROR_IF_WRONG
@@ -48,7 +48,8 @@ def diagnose_axis(case: Case, prior: FieldPrior = FIELD) -> Diagnosis | None:
     )
     if plain is None or as_given is None:
         return None
-    flight = AxisFlight(case, plain, list(axis_effects(case.flown)), list(axis_laws(case, plain)))
+    table = [*axis_effects(case.flown), *curves_of(case, plain, has_name=True)]
+    flight = AxisFlight(case, plain, table, list(axis_laws(case, plain)))
     decision = decided(
         flight, first_stage(flight), prior, lambda rows: [_named_air(case.axis, row) for row in rows]
     )
@@ -172,7 +173,7 @@ def air_of(axis: Axis) -> Alternative:
 def _named_air(axis: Axis, row: Row[AxisModel]) -> Row[AxisModel]:
     """Return the row with gusts as its answer, if the gusts alone exceed natural gusts."""
     gusts = row.explanation.gusts
-    blown = row.alternative == NONE and gusts is not None and gusts.air.angle > NATURAL_GUST_ANGLE
+    blown = row.alternative == NONE and gusts is not None and gusts.angle > NATURAL_GUST_ANGLE
     return relabelled(row, air_of(axis)) if blown else row
 
 
@@ -218,6 +219,7 @@ def _cause(case: Case, tried: AxisModel, final: _Told, probability: float, prese
     at = [n + places.index(place) for place in effect.places]
     sizes = zip(variant.names, final.mean[at] - base_of(case, effect), final.std[at], strict=True)
     parameters = {name: Value(float(size), float(error)) for name, size, error in sizes}
+    parameters |= {name: Value(value, 0.0) for name, value in variant.fixed.items()}
     if variant.inverted:
         name = variant.names[0]
         inverse, error = max(parameters[name].value, variant.smallest), parameters[name].std
@@ -233,7 +235,7 @@ def _air(case: Case, model: AxisModel, probability: float, is_found: bool, as_gi
     """Return gusts as a cause of the gap."""
     assert model.gusts is not None
     speed = float(np.mean([np.mean(record.airspeed.y) for record in case.flown.problem.records]))
-    size = Value(model.gusts.air.angle * speed, model.gusts.angle_std * speed)
+    size = Value(model.gusts.angle * speed, model.gusts.angle_std * speed)
     said = f"The air was not still: {case.axis.gust[0]} of about {size.value:.2g} m/s"
     gain = Value(model.gusts.likelihood - coloured_likelihood(model.fit), 0.0)
     return Cause(

@@ -9,24 +9,29 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from advisor.gap.axis.setting import THROTTLE, Flown
+from advisor.gap.axis.setting import DRIFT, EXPONENT, THROTTLE, Flown
+from advisor.gap.effects import EFFECTS as CATALOGUE
 from advisor.gap.effects.accelerometer_offset import ARM
 from advisor.gap.effects.actuator_backlash import BACKLASH
 from advisor.gap.effects.actuator_deadband import DEADBAND_ABOUT_TRIM
 from advisor.gap.effects.actuator_lag import LAG
 from advisor.gap.effects.actuator_rate_limit import RATE_LIMIT
+from advisor.gap.effects.airspeed_variation import ONE_POWER
 from advisor.gap.effects.pitch_rate_scale import SCALE
+from advisor.gap.effects.thrust_moment import AT_ONCE, BEHIND, THROTTLE_MOVES
 from advisor.gap.effects.thrust_moment import EFFECT as THRUST
-from advisor.gap.effects.thrust_moment import THROTTLE_MOVES
 from advisor.gap.effects.transport_delay import DELAY
-from advisor.gap.inference.sizes import width_of
+from advisor.gap.inference.sizes import ARM_SHARES, width_of
+from advisor.gap.inference.with_motion import WITNESSES
 from advisor.gap.kit.effect import without_sizes
 from advisor.gap.kit.least import FILTERED_S
 from advisor.gap.kit.skew import skew_beyond
 from advisor.gap.kit.variant import Variant
 from advisor.gap.result import Unseen, spelled
 from advisor.model.axis import Axis, Place
+from advisor.oem.axis.parameter import moves_in
 from advisor.oem.axis.problem import COMMAND
+from advisor.oem.prepare import SPEED_CHANGE
 from advisor.process.arrays import FloatArray
 from advisor.words.quantities import channel
 
@@ -49,6 +54,11 @@ class AxisEffect:
     """Whether the effect acts at a control, whose name its own name contains."""
     columns: FloatArray | None = field(default=None, compare=False)
     """(N, k) change of the outputs per unit of each parameter, where it is linear."""
+
+    @property
+    def kind(self) -> str:
+        """Key of a change of derivatives in the axis' table; another effect's place."""
+        return self.places[0][0].partition("@")[0]
 
     @property
     def named(self) -> str:
@@ -76,6 +86,13 @@ class AxisEffect:
         return tuple(start for start in self.variant.starts if start[0])
 
     @property
+    def begins(self) -> list[tuple[float, ...]]:
+        """Sizes about which the outputs are taken as linear: none of an effect, at each tabulated position,
+        time or rate."""
+        nothing = (0.0,) * len(self.places)
+        return [start for start in self.variant.starts if not start[0]] or [nothing]
+
+    @property
     def sides(self) -> tuple[Place, tuple[float, ...]] | None:
         """Parameter whose value differs by manoeuvre, with the values to choose from; None without one."""
         return None if self.variant.sides is None else ((self.of, self.variant.sides[0]), (-1.0, 0.0, 1.0))
@@ -97,24 +114,43 @@ def block_of(axis: Axis, of: str) -> str:
     """Return the block of an output, of the throttle or of all commands; any other name is a block itself."""
     blocks = {output: block for block, output in axis.sensors.items()}
     turned = next((t.state for t in axis.shared if t.factor == axis.propeller[0]), "")
+    turned = next((m.state for place, m in axis.moments.items() if place[0] == THROTTLE), turned)
     by_state = {state: block for block, state in axis.equations.items()}
-    return {**blocks, "throttle": by_state.get(turned, ""), "command": "input"}.get(of, of)
+    return {**axis.blocks, **blocks, "throttle": by_state.get(turned, ""), "command": "input"}.get(of, of)
 
 
 def axis_effects(flown: Flown) -> Iterator[AxisEffect]:
-    """Yield every effect that the records of a flight can show."""
-    axis, problem = flown.axis, flown.problem
-    controls = list(filter(problem.flies, axis.inputs))
+    """Yield every effect that the records of a flight can show, apart from nonlinear ones."""
+    axis = flown.axis
+    yield from _of_servos(flown)
+    yield from _of_instruments(flown)
+    if axis.propeller[0] and _throttle_moves(flown):
+        yield _propeller(*axis.propeller)
+    yield from _by_moments(flown)
+    yield from (effect for effect in changes_of(flown) if axis.changes[effect.kind].has_name)
+    speeds = np.concatenate([r.airspeed.y for r in flown.problem.records])
+    varied = flown.problem.reference_airspeed_m_s and np.ptp(speeds) > SPEED_CHANGE * np.mean(speeds)
+    if axis.changes and varied:
+        yield _sized(ONE_POWER.block, ONE_POWER, (EXPONENT,), {})
+
+
+def _of_servos(flown: Flown) -> Iterator[AxisEffect]:
+    """Yield the effects between the commands and the surfaces."""
+    axis, controls = flown.axis, list(filter(flown.problem.flies, flown.axis.inputs))
     for of in controls:
         for variant, entries in _SERVO:
-            yield _sized(
-                of, variant, tuple((of, entry) for entry in entries), {"elevator": of}, at_control=True
-            )
+            places = tuple((of, entry) for entry in entries)
+            yield _sized(of, variant, places, {"elevator": of}, at_control=of not in axis.blocks)
     if len(controls) > 1:
         # A delay before the commands part delays all surfaces equally, and is one cause.
         words = {"transport": "common transport", "command and surface": "all commands and surfaces"}
         yield _sized("command", replace(DELAY, starts=()), (COMMAND,), words)
-    measured = set.intersection(*(set(record.outputs) for record in problem.records))
+
+
+def _of_instruments(flown: Flown) -> Iterator[AxisEffect]:
+    """Yield the effects in the readings."""
+    axis, hidden = flown.axis, flown.axis.hidden
+    measured = set.intersection(*(set(record.outputs) for record in flown.problem.records))
     for of in filter(measured.__contains__, axis.readings):
         spoken, skew, block = axis.readings[of]
         words = dict.fromkeys(("pitch rate", "angle of attack"), spoken)
@@ -122,12 +158,59 @@ def axis_effects(flown: Flown) -> Iterator[AxisEffect]:
         if block:
             yield _sized(of, replace(SCALE, block=block), ((of, "scale"),), {"pitch rate": spoken})
     if axis.force in measured:
-        yield AxisEffect(axis.force, ARM, ((axis.force, "arm_m"),), (_ARM_STD_M,))
-    vane = replace(ARM, effect="alpha_vane_offset", block="alpha_sensor")
-    for of in measured.intersection(axis.arms) if flown.arm_is_stated else ():
-        yield AxisEffect(of, vane, ((of, "arm_m"),), (_ARM_STD_M,))
-    if axis.propeller[0] and _throttle_moves(flown):
-        yield _propeller(*axis.propeller)
+        yield AxisEffect(axis.force, ARM, ((axis.force, "arm_m"),), (_arm_std_m(flown, ARM.effect),))
+    vane = replace(ARM, effect="alpha_vane_offset", block="alpha_sensor", bounds=((-100.0, 100.0),))
+    for of in measured.intersection(axis.arms) if flown.arm_is_stated or axis.arms_are_causes else ():
+        yield AxisEffect(of, vane, ((of, "arm_m"),), (_arm_std_m(flown, vane.effect),))
+    if axis.computed and hidden in measured:
+        scale = replace(SCALE, effect="alpha_scale", block="alpha_sensor")
+        yield _sized(hidden, scale, ((hidden, "scale"),), {})
+        lag = Variant("alpha_lag", "alpha_sensor", ("lag_s",), ((0.0,),), (0.01,), ((0.0, 1.0),), FILTERED_S)
+        yield _sized(hidden, lag, ((hidden, "filter_s"),), {})
+
+
+def _by_moments(flown: Flown) -> Iterator[AxisEffect]:
+    """Yield the moments of known signals that not every aircraft has, such as the thrust's."""
+    axis = flown.axis
+    for place, moment in axis.moments.items():
+        if np.isfinite(moment.std) or not any(moves_in(r, moment.signals) for r in flown.problem.records):
+            continue
+        moves = max(float(np.ptp(r.signals[n].y)) for r in flown.problem.records for n in moment.signals)
+        if moves > THROTTLE_MOVES:
+            # Half of the moment of the largest flown deflection.
+            (control,) = axis.inputs
+            of = next(t.name for t in axis.shared if (t.factor, t.state) == (control, moment.state))
+            std = 0.5 * abs(flown.derivatives[of]) * max(0.02, flown.problem.motion(control) / 2.0)
+            yield AxisEffect(place[0], AT_ONCE, (place,), (std,))
+            lag = width_of(BEHIND.effect, BEHIND.names[1])
+            yield AxisEffect(place[0], BEHIND, (place, (place[0], "lag_s")), (std, lag))
+
+
+def changes_of(flown: Flown) -> Iterator[AxisEffect]:
+    """Yield every change of derivatives that begins with a manoeuvre, or that grows steadily."""
+    count = len(flown)
+    if count < WITNESSES:
+        return
+    block = {effect.name: effect.block for effect in CATALOGUE.values()}
+    for kind, change in flown.axis.changes.items():
+        k = len(change.names)
+        variant = Variant(
+            change.effect, block.get(change.effect, "input"), change.names, ((0.0,) * k,), (0.005,) * k,
+            change.bounds, 0.01,
+        )  # fmt: skip
+        for since in (DRIFT, *range(1, count)) if k == 1 else range(1, count):
+            places = tuple((f"{kind}@{since}", name) for name in change.names)
+            yield AxisEffect(variant.block, variant, places, (change.std,) * k)
+
+
+def _arm_std_m(flown: Flown, effect: str) -> float:
+    """Return the prior standard deviation of an arm, m: a share of the way flown in a radian of the fastest
+    mode."""
+    if not flown.axis.arms_are_causes:
+        return _ARM_STD_M
+    theta = np.array([flown.derivatives[name] for name in flown.axis.names.shared])
+    fastest = float(np.max(np.abs(np.linalg.eigvals(flown.problem.linear(theta, 0).matrix))))
+    return ARM_SHARES[effect] * flown.problem.mean_airspeed_m_s / max(fastest, 0.5)
 
 
 def _sized(

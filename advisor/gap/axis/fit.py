@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from advisor.gap.axis.setting import Flown, Setting, laid_out, moved_to
+from advisor.gap.axis.setting import Flown, Setting, column_of_change, filtered, laid_out, moved_to
 from advisor.gap.inference.marginal import Prior
 from advisor.model.axis import Names, Place
 from advisor.oem.arrow import unabsorbed
@@ -28,8 +28,8 @@ from advisor.process.arrays import FloatArray
 MOST = 40
 """Numerical: largest number of trial steps of a fit; a fit from a tabulated start takes three to six."""
 SETTLED = 0.05
-"""Numerical: decrease of the cost, -2 log likelihood, in one step, below which a fit has converged: far below
-one nat."""
+"""Numerical: decrease of -2 log likelihood over the temperature, in one step, below which a fit has
+converged: far below one nat."""
 
 
 class Flying(NamedTuple):
@@ -136,15 +136,24 @@ class Fit:
 
 
 def fitted(
-    flown: Flown, begin: Point, free: Sequence[Parameter], prior_known: Known, most: int = MOST
+    flown: Flown, begin: Point, free: Sequence[Parameter], prior_known: Known, share: float = 1.0
 ) -> Fit | None:
-    """Return the optimum from a start; None if the simulation diverges."""
+    """Return the optimum from a start; None if the simulation diverges.
+
+    One nat of the white-noise likelihood counts as ``share``² nats.
+    """
     std, n = prior_known.precision**-0.5, len(begin.theta)
     priors = zip(prior_known.mean[n:].tolist(), std[n:].tolist(), strict=True)
     widths = [replace(f, prior=Width(*each)) for f, each in zip(free, priors, strict=True)]
     prior, place = Priors(prior_known.mean[:n], std[:n]), (begin.theta, begin.local)
     descent = descended(
-        _Motion(flown.axis.names), Flying(flown, begin.setting), widths, prior, place, most, SETTLED
+        _Motion(flown.axis.names),
+        Flying(flown, begin.setting),
+        widths,
+        prior,
+        place,
+        MOST,
+        SETTLED / share**2,
     )
     if isinstance(descent, NoEstimate):
         return None
@@ -184,7 +193,7 @@ class _Motion:
 
     def floor(self, laid: AxisAssembly, /) -> FloatArray:
         """Return the least standard deviation of each output, SI."""
-        return laid.axis.least
+        return laid.least
 
     def begins(self, laid: AxisAssembly, /) -> FloatArray:
         """Return the time of the first event of each record, s."""
@@ -203,7 +212,8 @@ class _Motion:
         simulated = simulate(laid, theta, local)
         if simulated is None:
             return None
-        y, g, motion = simulated
+        setting, motion = problem.setting, simulated[2]
+        y, g = (filtered(laid, setting, raw) for raw in simulated[:2])
         rates = motion[laid.grid.first[:-1], 1]
         begun = Begun(laid.begin, rates)
         added = sum(f.read(problem) * f.column for f in free if f.adds and f.column is not None)
@@ -211,11 +221,13 @@ class _Motion:
         def slope(f: Parameter) -> FloatArray:
             if f.column is not None:
                 return f.column
+            if f.place[0].partition("@")[0] in laid.axis.changes:
+                return column_of_change(problem.flown, setting, f.place, theta, g, laid.owner)
             column = column_of(f.place, problem.at(f.place), laid, local, simulated)
             return (
-                _by_difference(f, problem, Point(theta, local, problem.setting), y, begun)
+                _by_difference(f, problem, Point(theta, local, setting), y, begun)
                 if column is None
-                else column
+                else filtered(laid, setting, column)
             )
 
         def columns() -> FloatArray:
@@ -238,7 +250,7 @@ def _as_fit(point: Point, assembly: AxisAssembly, response: Response, free: Sequ
     The columns of derivatives that the flight does not show are zero.
     """
     n = len(point.theta)
-    noise, cost = weigh(assembly.z, response.y, assembly.channel, assembly.axis.least)
+    noise, cost = weigh(assembly.z, response.y, assembly.channel, assembly.least)
     begun = Begun(assembly.begin, response.begun)
     slopes, weight = response.columns(), 1.0 / noise[assembly.channel]
     columns = np.column_stack([response.g[:, :n], slopes])
@@ -263,4 +275,4 @@ def outputs(flown: Flown, point: Point, begun: Begun | None = None) -> FloatArra
         local = local.copy()
         initial = np.array(laid.axis.initial) - len(laid.axis.shared)
         local[:, initial] += (laid.begin - begun.t)[:, None] * begun.rates
-    return outputs_of(laid, point.theta, local)
+    return filtered(laid, point.setting, outputs_of(laid, point.theta, local))

@@ -31,7 +31,6 @@ from advisor.gap.inference.stage import (
     within_model_error,
 )
 from advisor.gap.result import Value
-from advisor.oem.axis.disturbance import Course, courses_of
 from advisor.oem.axis.parameter import Parameter
 from advisor.process.arrays import FloatArray
 from advisor.process.parts import Parts
@@ -188,7 +187,7 @@ class AxisFlight:
         """
         looked = stage.plain.starts
         assert looked is not None
-        starts = {start.name: start for start in looked.of_each}
+        starts = {s.name: s for s in sorted(looked.of_each, key=lambda s: -s.price)}
         for lead in leads:
             for other in (starts[e.name] for e in _beside(lead, self.table) if e.name in starts):
                 price = looked.together(starts[lead.name], other)
@@ -223,9 +222,8 @@ class AxisFlight:
         still = [stage.plain, *likely]
         lead = int(np.argmax([m.evidence.either for m in still]))
         fit = still[lead].fit
-        courses = courses_of(fit.linear(self.case.flown))
-        air = gusts_of(fit, courses, self._wide(fit))
-        blown = within_model_error(self, [self._blown(m, courses, air) for m in still], 0.0)
+        air = gusts_of(fit, self.case.flown)
+        blown = within_model_error(self, [self._blown(m, air) for m in still], 0.0)
         gain = air.likelihood - coloured_likelihood(fit)
         over = still[lead].evidence.either + gain - blown[lead].evidence.either
         first, *others = (replace(m.more(over), likelihood=m.likelihood + over) for m in blown)
@@ -234,18 +232,18 @@ class AxisFlight:
     def _wide(self, fit: Fit) -> Known:
         return self.case.prior_of(ERROR_IF_WRONG, fit.free)
 
-    def _blown(self, model: AxisModel, courses: Sequence[Course], air: Gusts) -> AxisModel:
+    def _blown(self, model: AxisModel, air: Gusts) -> AxisModel:
         """Return an explanation with gusts in addition, at its optimum in these gusts.
 
         A fit in white noise has absorbed part of the gusts in the derivatives, and lies far from the optimum
         in gusts.
         """
         wide = self._wide(model.fit)
-        gusts = gusts_of(model.fit, courses, wide, air)
+        gusts = air.at(model.fit, self.case.flown)
         for _ in range(_STEPS):
             change = gusts.change(wide, model.fit)
             fits = (moved_by(self.case.flown, model.fit, share * change) for share in (1.0, 0.25))
-            ahead = ((fit, gusts.at(fit, courses)) for fit in fits if fit is not None)
+            ahead = ((fit, gusts.at(fit, self.case.flown)) for fit in fits if fit is not None)
             height = gusts.height(wide, model.fit)
             fit, gusts = next(((f, g) for f, g in ahead if g.height(wide, f) > height), (None, gusts))
             if fit is None:
@@ -303,7 +301,8 @@ class AxisFlight:
 def _beside(base: AxisModel | None, table: Sequence[AxisEffect]) -> list[AxisEffect]:
     """Return the effects that share no entry with the effect of a model."""
     taken = set(base.effect.places) if base is not None and base.effect is not None else set()
-    return [effect for effect in table if not taken & set(effect.places)]
+    name = base.effect.name if base is not None and base.effect is not None else ""
+    return [effect for effect in table if effect.name != name and not taken & set(effect.places)]
 
 
 def _narrowed(free: Sequence[Parameter], effect: AxisEffect | None) -> list[Parameter]:

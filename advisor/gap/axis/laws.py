@@ -9,7 +9,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from advisor.gap.axis.effects import AxisEffect, block_of
+from advisor.gap.axis.effects import AxisEffect, block_of, changes_of
 from advisor.gap.axis.fit import Fit
 from advisor.gap.axis.models import Case
 from advisor.gap.inference.sizes import BENT, of_range
@@ -18,6 +18,7 @@ from advisor.gap.uncatalogued.candidate_laws import RINGING, STOPS, SURFACE_STOP
 from advisor.gap.verdict.missing_law import Lacking
 from advisor.model.axis import Axis
 from advisor.model.axis_response import respond_axis
+from advisor.oem.alpha_use import FEWEST_SAMPLES
 from advisor.oem.axis.disturbance import STEP_S, answered, courses_of
 from advisor.process.arrays import FloatArray
 
@@ -42,8 +43,12 @@ def axis_laws(case: Case, fit: Fit) -> Iterator[AxisEffect]:
             law = replace(law, block=of)
             places = tuple((of, entry) for entry in law.entries or law.names)
             yield AxisEffect(
-                of, law, places, of_range(law), {law.effect: f"{of} {law.effect}"}, at_control=True
+                of, law, places, of_range(law), {law.effect: f"{of} {law.effect}"}, of not in axis.blocks
             )
+    yield from (law for law in changes_of(case.flown) if not axis.changes[law.kind].has_name)
+    if axis.curves:
+        yield from curves_of(case, fit)
+        return
     motions = [_motion(fit, m) for m in range(len(case.flown))]
     sizes = case.prior_of(1.0, ()).precision ** -0.5
     slopes = {(term.state, term.factor): x for term, x in zip(axis.shared, sizes, strict=True)}
@@ -51,6 +56,43 @@ def axis_laws(case: Case, fit: Fit) -> Iterator[AxisEffect]:
         yield from _curves(case, fit, motions, block, {block: 1.0})
     for block, state in axis.equations.items():
         yield from _curves(case, fit, motions, block, {of: slopes[state, of] for of in axis.letters.values()})
+
+
+def curves_of(case: Case, fit: Fit, has_name: bool = False) -> Iterator[AxisEffect]:
+    """Yield the axis' nonlinear effects, or its laws without a name."""
+    axis, names = case.axis, case.axis.names.shared
+    motions = [_from_trim(_motion(fit, m)) for m in range(len(case.flown))]
+    most = {
+        of: max(float(np.max(np.abs(motion[of]))) for motion in motions) + 1e-12
+        for of in motions[0]
+        if of != "t" and all(of in motion for motion in motions)
+    }
+    sizes = dict(zip(names, (case.prior_of(1.0, ()).precision ** -0.5).tolist(), strict=True))
+    for k, curve in enumerate(axis.curves):
+        if curve.has_name != has_name or not (curve.block in axis.equations or curve.block in most):
+            continue
+        try:
+            forms = [np.column_stack(curve.forms(motion, sizes)) for motion in motions]
+        except KeyError:  # the flight lacks a reading
+            continue
+        linear = fit.linear(case.flown)
+        parts = [
+            answered(linear, m, curve.block, motion["t"], form)
+            for m, (motion, form) in enumerate(zip(motions, forms, strict=True))
+        ]
+        std = tuple(curve.std(sizes, most))
+        variant = replace(
+            _CURVE, effect=curve.effect, block=curve.block, names=curve.names, starts=((0.0,) * len(std),),
+            steps=tuple(0.1 * each for each in std), bounds=((-np.inf, np.inf),) * len(std),
+            fixed=curve.fixed,
+        )  # fmt: skip
+        places = tuple((f"{curve.effect}.{k}", name) for name in curve.names)
+        yield AxisEffect(curve.block, variant, places, std, columns=np.vstack(parts))
+
+
+def _from_trim(motion: Mapping[str, FloatArray]) -> Mapping[str, FloatArray]:
+    """Return the motion relative to its first values."""
+    return {of: y if of == "t" else y - np.median(y[:FEWEST_SAMPLES]) for of, y in motion.items()}
 
 
 def lacking(case: Case, fit: Fit, block: str) -> Iterator[Lacking]:
@@ -102,6 +144,7 @@ def _motion(fit: Fit, m: int) -> Mapping[str, FloatArray]:
     nothing = np.empty((0, fit.sensitivities.shape[1]))
     respond_axis(grid, fit.point.theta, fit.point.local, np.empty(len(assembly.z)), nothing, course)
     moves = dict(zip(axis.states, course[events, 0].T, strict=True))
+    moves |= {f"{of}'": rate for of, rate in zip(axis.states, course[events, 1].T, strict=True)}
     moves |= {of: grid.inputs[events, k] - grid.inputs[events][0, k] for k, of in enumerate(axis.inputs)}
     moved = {name: np.interp(t, stamps, y) for name, y in moves.items()}
     for output, rows in assembly.rows[m].items():

@@ -36,7 +36,10 @@ def measured(
     kept = np.flatnonzero(~np.isnan(after).all(axis=1))
     kept = kept if len(kept) else np.arange(len(after))
     seen = np.flatnonzero(counts[kept].sum(axis=0))
-    floor, counts, squares = fit.noise[seen], counts[:, seen], (before[:, seen], after[:, seen])
+    # An output that was filtered before storage says nothing of its noise.
+    stated = fit.assembly.least > fit.assembly.axis.least
+    floor = np.where(stated, fit.assembly.least, fit.noise)[seen]
+    counts, squares = counts[:, seen], (before[:, seen], after[:, seen])
     whole = [x[kept].sum(axis=0) / counts[kept].sum(axis=0) for x in squares]
     with np.errstate(invalid="ignore"):  # a manoeuvre may lack an output
         was, now = (x / counts for x in squares)

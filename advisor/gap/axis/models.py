@@ -1,6 +1,6 @@
 """Models of a flight: one without effects and one for each effect."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -10,11 +10,14 @@ from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.gap.axis.effects import AxisEffect
 from advisor.gap.axis.fit import Fit, Known, Point, fitted
 from advisor.gap.axis.setting import Flown
+from advisor.gap.candidates.nuisances import REACH
 from advisor.gap.fitting.prior import ERROR_IF_WRONG
+from advisor.gap.records.floor import SMOOTH, TOLERANCE
+from advisor.gap.records.smoothness import white_part
 from advisor.model.axis import Axis
 from advisor.oem.axis.parameter import Parameter, parameters_of, stated_arm_m
 from advisor.oem.axis.prepare import prepare
-from advisor.oem.axis.problem import COMMAND, lay_out
+from advisor.oem.axis.problem import COMMAND, AxisProblem, lay_out
 from advisor.oem.axis.start import starting_point
 from advisor.oem.estimate import NoEstimate
 from advisor.oem.extra import Prior
@@ -22,9 +25,6 @@ from advisor.oem.prepare import signal_of
 from advisor.oem.prior import HELD
 from advisor.process.arrays import FloatArray
 
-SMALL_SHARE = 0.1
-"""Prior: least size of a derivative for its relative error, over the derivative's natural size
-(``natural_size``)."""
 NATURAL_STEP = 1e-3
 """Numerical: finite-difference step of a natural delay, s, where the simulation gives no derivative."""
 _ANYWHERE = (-np.inf, np.inf)
@@ -61,7 +61,7 @@ class Case:
         """
         names, sizes = self.axis.names.reported, self.axis.natural_size(self.theta)
         size = np.array([sizes[name] for name in names])
-        scale = np.maximum(np.abs(self.theta), SMALL_SHARE * size)
+        scale = np.maximum(np.abs(self.theta), self.axis.relative_to * size)
         stated = np.array([name in self.stated for name in names])
         std = np.concatenate([np.where(stated, tolerance * scale, size), [f.prior.std for f in free]])
         mean = np.concatenate([self.theta, [f.prior.mean for f in free]])
@@ -74,7 +74,7 @@ class Case:
         self, at: Point, free: Sequence[Parameter], tolerance: float = ERROR_IF_WRONG, share: float = 1.0
     ) -> Fit | None:
         """Return the fit from a start; ``tolerance`` is the relative error of the stated derivatives."""
-        return fitted(self.flown, at, free, self.prior_of(tolerance, free, share))
+        return fitted(self.flown, at, free, self.prior_of(tolerance, free, share), share)
 
 
 def case_of(
@@ -104,13 +104,59 @@ def case_of(
         for x in parameters_of(problem, aircraft)
         if x.entry != "lag_s" or x.place in setting
     ]
+    natural = list(_of_one_control(axis, natural)) if len(axis.inputs) == 1 else natural
+    natural += _filters(problem)
     free = lay_out(problem).free
     determined = tuple(name for k, name in enumerate(names) if name in aircraft.model and k in free)
     given = np.array([aircraft.model.get(n, v) for n, v in zip(names, theta, strict=True)])
     begin = Point(theta, starting_point(problem)[1], setting)
     arm_is_stated = any(stated_arm_m(name, aircraft) is not None for name in axis.arms)
-    flown = Flown(problem, throttle, arm_is_stated)
+    problem = replace(problem, floor=floor_of(problem))
+    about = dict(zip(names, theta.tolist(), strict=True))
+    flown = Flown(problem, throttle, arm_is_stated, about)
     return Case(flown, given, determined, tuple(natural), begin, tuple(m.number for m in maneuvers), fixed)
+
+
+def _of_one_control(axis: Axis, natural: Sequence[Parameter]) -> Iterator[Parameter]:
+    """Yield the natural parameters of an axis with one control, whose delay is that of all commands."""
+    common = next((x.prior.std for x in natural if x.place == COMMAND), 0.0)
+    for x in natural:
+        if x.place == COMMAND or (axis.arms_are_causes and x.entry == "arm_m"):
+            continue
+        if x.place[0] in axis.inputs and x.entry == "delay_s":
+            at = x.prior.mean
+            x = replace(x, prior=Prior(at, common), bounds=(at - common, at + common))
+        yield x
+
+
+def _filters(problem: AxisProblem) -> Iterator[Parameter]:
+    """Yield the delays by an autopilot's filters, and the instrument of an angle that the autopilot
+    computes."""
+    axis = problem.axis
+    measured = set.intersection(*(set(record.outputs) for record in problem.records))
+    for of, std in axis.filters.items():
+        if of in measured:
+            yield Parameter((of, "delay_s"), Prior(0.0, std), bounds=(-REACH * std, REACH * std), step=1e-3)
+    if problem.is_computed:
+        for place, (std, bounds) in axis.computed.items():
+            yield Parameter(place, Prior(0.0, std), bounds=bounds, step=0.01)
+
+
+def floor_of(problem: AxisProblem) -> Mapping[str, float]:
+    """Return the noise that is assumed in outputs filtered before storage: 2 % of the output's peak.
+
+    Differences of raw samples show the white noise of an instrument, unless the record was filtered.
+    """
+    if not problem.axis.computed:
+        return {}
+    floor = {}
+    for name in set.intersection(*(set(record.outputs) for record in problem.records)):
+        series = [record.outputs[name].y for record in problem.records]
+        peak = float(np.median([np.max(np.abs(y - np.median(y[: max(5, len(y) // 50)]))) for y in series]))
+        white = white_part(series)
+        own = name == problem.axis.hidden and problem.is_computed
+        floor[name] = TOLERANCE * peak if own or white < SMOOTH * peak else white
+    return floor
 
 
 def free_with(case: Case, effect: AxisEffect, plain: Fit) -> tuple[Parameter, ...]:

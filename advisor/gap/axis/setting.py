@@ -5,7 +5,7 @@ deflection (``gap.simulator.surface``). Instruments act on the outputs: skew of 
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -13,10 +13,15 @@ from advisor.gap.simulator.layout import ENTRIES, INDEX
 from advisor.gap.simulator.surface import surface
 from advisor.model.axis import Axis, Place
 from advisor.oem.axis.problem import AxisAssembly, AxisProblem, lay_out
+from advisor.oem.lag import lagged
 from advisor.oem.rows import Signal
 from advisor.oem.surface import LONGEST_STEP_S
 from advisor.process.arrays import FloatArray
 
+EXPONENT = ("speed", "exponent")
+"""Place of the power of the air speed with which forces and moments grow beyond V²."""
+DRIFT = "drift"
+"""Second part of a change that grows steadily over the flight: ``mass@drift``."""
 THROTTLE = "throttle"
 """First part of the place of the propeller's moment, which is stated as the deflection of a control."""
 
@@ -31,6 +36,13 @@ class Flown:
     """Throttle of each record, 0..1; None where it was not recorded."""
     arm_is_stated: bool = False
     """Whether the aircraft file states the place of the sideslip vane."""
+    derivatives: Mapping[str, float] = field(default_factory=dict)
+    """Derivatives of the flight's estimate, by name."""
+
+    @property
+    def begins_s(self) -> FloatArray:
+        """Shape (m,): time of the first sample of each record, s."""
+        return np.array([r.outputs[self.axis.needed[0]].t[0] for r in self.problem.records])
 
     @property
     def axis(self) -> Axis:
@@ -82,7 +94,85 @@ def laid_out(flown: Flown, setting: Setting) -> AxisAssembly:
         values |= {(name, entry): 0.0 for name in bent for entry in ("lag_s", "delay_s")}
     # The slope by a delay jumps where a sample lies near a command's corner: a difference passes the corner.
     causes = [(name, "lag_s") for name in axis.inputs if name not in bent]
-    return lay_out(replace(flown.problem, records=records, values=values), causes)
+    laid = lay_out(replace(flown.problem, records=records, values=values), causes)
+    factor = _factor(flown, setting, laid)
+    return laid if factor is None else replace(laid, grid=laid.grid._replace(factor=factor))
+
+
+def _factor(flown: Flown, setting: Setting, laid: AxisAssembly) -> FloatArray | None:
+    """Return the further factor of each derivative and constant (E, d); None without one."""
+    axis, grid = flown.axis, laid.grid
+    exponent = setting.get(EXPONENT, np.zeros(1))[0]
+    changes = [(place, float(v[0])) for place, v in setting.items() if "@" in place[0] and v[0] != 0.0]
+    if not changes and exponent == 0.0:
+        return None
+    factor = np.repeat(grid.ratio[:, None] ** exponent, len(axis.place), axis=1)
+    owner = np.repeat(np.arange(len(flown)), np.diff(grid.first))
+    for place, value in changes:
+        for k, growth in _grown(flown, place, value).items():
+            factor[:, k] *= growth[owner]
+    return factor
+
+
+def _grown(flown: Flown, place: Place, value: float) -> Mapping[int, FloatArray]:
+    """Return the factor of each changed derivative in each manoeuvre (m,), by the derivative's index."""
+    change, moved = change_at(flown, place), share_of(flown, place) * value
+    names = flown.axis.names.shared
+    grown = {names.index(n): np.maximum(1.0 + w * moved, 0.1) for n, w in change.items()}
+    divides = flown.axis.changes[place[0].partition("@")[0]].divides
+    return {k: 1.0 / growth for k, growth in grown.items()} if divides else grown
+
+
+def change_at(flown: Flown, place: Place) -> Mapping[str, float]:
+    """Return the derivatives that a change multiplies, each with its weight."""
+    change = flown.axis.changes[place[0].partition("@")[0]]
+    return change.weights(flown.derivatives)[change.names.index(place[1])]
+
+
+def share_of(flown: Flown, place: Place) -> FloatArray:
+    """Return the share of a change in each manoeuvre, shape (m,).
+
+    A change begins with a manoeuvre, or grows with the time since the first record.
+    """
+    _, _, since = place[0].partition("@")
+    if since == DRIFT:
+        passed = flown.begins_s - flown.begins_s[0]
+        return np.asarray(passed / max(float(passed[-1]), 1.0))
+    return (np.arange(len(flown)) >= int(since)).astype(float)
+
+
+def column_of_change(
+    flown: Flown, setting: Setting, place: Place, derivatives: FloatArray, g: FloatArray, owner: np.ndarray
+) -> FloatArray:
+    """Return the derivative of the outputs (N,) by a change, from those (N, d) by the derivatives."""
+    value = float(setting[place][0]) if place in setting else 0.0
+    share, change = share_of(flown, place), change_at(flown, place)
+    names = flown.axis.names.shared
+    sign = -1.0 if flown.axis.changes[place[0].partition("@")[0]].divides else 1.0
+    column = np.zeros(len(g))
+    for name, w in change.items():
+        k = names.index(name)
+        column += (
+            (sign * w * share / np.maximum(1.0 + w * share * value, 0.1))[owner] * derivatives[k] * g[:, k]
+        )
+    return column
+
+
+def filtered(laid: AxisAssembly, setting: Setting, columns: FloatArray) -> FloatArray:
+    """Return outputs (N,), or columns (N, k) of their derivatives, behind the first-order filters of a
+    setting."""
+    lags = {of: float(v[0]) for (of, entry), v in setting.items() if entry == "filter_s"}
+    lags = {of: lag for of, lag in lags.items() if lag > 0.0}
+    if not lags:
+        return columns
+    passed = columns.reshape(len(columns), -1).copy()
+    for named in laid.rows:
+        for of, rows in ((of, named[of]) for of in lags if of in named):
+            step = np.diff(laid.t[rows])
+            for k in range(passed.shape[1]):
+                y = np.ascontiguousarray(passed[rows, k])
+                passed[rows, k] = lagged(step, y[:-1], y[1:], lags[of], y[0])
+    return passed.reshape(columns.shape)
 
 
 def _is_bent(name: str, setting: Setting) -> bool:

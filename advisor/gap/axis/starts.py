@@ -12,7 +12,7 @@ import numpy as np
 from advisor.gap.axis.effects import AxisEffect
 from advisor.gap.axis.fit import Fit, Point, outputs
 from advisor.gap.axis.models import Case, base_of
-from advisor.gap.axis.setting import Flown, Setting, deflection, moved_to
+from advisor.gap.axis.setting import Flown, Setting, column_of_change, deflection, moved_to
 from advisor.gap.fitting.prior import ERROR_IF_WRONG
 from advisor.oem.axis.disturbance import STEP_S, answered
 from advisor.oem.axis.problem import COMMAND
@@ -59,12 +59,12 @@ class Start(NamedTuple):
 
     effect: AxisEffect
     cost: float
-    """-2 log likelihood over the temperature at the start, after a linear refit of all other parameters."""
+    """-2 log posterior density over the temperature at the start, after a linear refit of all other
+    parameters."""
     point: Point
     way: FloatArray
-    """Shape (N,): weighted change of the outputs by the effect, without what other parameters absorb."""
-    saved: float = 0.0
-    """Part of the cost's decrease that comes from the prior of a replaced nuisance parameter."""
+    """Shape (N + p,): weighted change by the effect of the outputs, and of p parameters relative to their
+    priors, without what other parameters absorb."""
 
     @property
     def name(self) -> str:
@@ -92,13 +92,23 @@ class Starts:
         prior = case.prior_of(tolerance, plain.free)
         # One nat of white noise counts as share² nats, beside priors with their true weight.
         self._weight = share * plain.weight
-        self._columns = plain.columns * self._weight[:, None]
-        self._information = self._columns.T @ self._columns + np.diag(prior.precision)
+        # A parameter at its bound stays there, whatever an effect explains.
+        low, high = plain.bounds
+        self._free = np.flatnonzero((plain.values > low) & (plain.values < high))
+        root = prior.precision[self._free] ** 0.5
+        off = prior.mean - plain.values
+        weighed = plain.columns[:, self._free] * self._weight[:, None]
+        # A prior is a measurement of its parameter: an effect may relieve a parameter that strains at it.
+        self._columns = np.vstack([weighed, np.diag(root)])
+        self._information = self._columns.T @ self._columns
         own = plain.assembly.free[plain.assembly.free >= len(plain.point.theta)]
         self._own = plain.sensitivities[:, own] * self._weight[:, None]
-        self._parts = [plain.assembly.owner == m for m in range(plain.assembly.maneuvers)]
-        self._begin = self._without(plain.residual * self._weight)
-        self._cost = -2.0 * share**2 * plain.likelihood - float(self._begin @ self._begin)
+        self._parts = [np.flatnonzero(plain.assembly.owner == m) for m in range(plain.assembly.maneuvers)]
+        self._begin, self._moves = self._without(
+            np.concatenate([plain.residual * self._weight, root * off[self._free]])
+        )
+        cost = -2.0 * share**2 * plain.likelihood + float(prior.precision @ off**2)
+        self._cost = cost - float(self._begin @ self._begin)
         self.of_each = [self._best(effect) for effect in table]
 
     def together(self, start: Start, other: Start) -> float:
@@ -106,51 +116,77 @@ class Starts:
         from scipy.optimize import nnls  # not on the start path
 
         left = nnls(np.column_stack([start.way, other.way]), self._begin)[1] ** 2
-        count = len(start.effect.places) + len(other.effect.places)
-        return self._cost + left - start.saved - other.saved + 2.0 * count
+        return self._cost + left + 2.0 * (len(start.effect.places) + len(other.effect.places))
 
     def _best(self, effect: AxisEffect) -> Start:
-        """Return the starting value of an effect with the least residual.
-
-        An effect that replaces a nuisance parameter starts at that parameter's value and saves the prior's
-        cost.
-        """
-        if effect.columns is not None:
-            return self._linear(effect, effect.columns)
+        """Return the starting value of an effect with the least residual."""
         plain = self._plain
-        saved = sum(
-            ((value - f.prior.mean) / f.prior.std) ** 2
-            for f, value in zip(plain.free, plain.values[len(plain.point.theta) :], strict=True)
-            if f.place in effect.places
-        )
-        if not saved:
-            linear = effect.of in self._case.axis.outputs or not effect.starts
-            tangent = [self._tangent(effect)] if linear else []
-            return min([*tangent, *self._each(effect)], key=lambda start: start.cost)
-        cost = self._cost + float(self._begin @ self._begin) - saved
-        return Start(effect, cost, plain.point, np.zeros(len(self._begin)), saved)
+        if effect.columns is not None:
+            return self._linear(effect, effect.columns, np.zeros(len(effect.places)))
+        is_natural = any(f.place in effect.places for f in plain.free)
+        linear = is_natural or effect.of in self._case.axis.outputs or not effect.starts
+        about = effect.begins if linear and effect.sides is None else []
+        tangents = [self._tangent(effect, np.array(begin)) for begin in about]
+        return min([*tangents, *self._each(effect)], key=lambda start: start.cost)
 
-    def _tangent(self, effect: AxisEffect) -> Start:
-        """Return the starting value of an effect from the derivative of the outputs.
+    def _tangent(self, effect: AxisEffect, begin: FloatArray) -> Start:
+        """Return the starting value of an effect from the derivative of the outputs at the sizes ``begin``.
 
         If one reading is late, the clocks of all other channels may be late too. A common delay of all clocks
         leaves no residual, but the linear model holds for small delays only.
         """
-        point, step = self._plain.point, np.array(effect.variant.steps)
-        setting = moved_to(point.setting, effect.places, base_of(self._case, effect) + step)
-        moved = outputs(self._case.flown, point._replace(setting=setting), self._plain.begun)
-        return self._linear(effect, (moved - self._plain.fitted)[:, None] / step)
+        setting, base = self._plain.point.setting, base_of(self._case, effect) + begin
+        natural = {f.place for f in self._plain.free}
+        at = np.array(
+            [setting[p][0] if p in natural else x for p, x in zip(effect.places, base, strict=True)]
+        )
+        steps = np.diag(effect.variant.steps)
+        columns = np.column_stack([self._slope(effect, at, step) for step in steps])
+        return self._linear(effect, columns, begin)
 
-    def _linear(self, effect: AxisEffect, columns: FloatArray) -> Start:
-        """Return the best start of an effect whose outputs are linear in its parameters."""
-        ways = np.column_stack([self._without(column * self._weight) for column in columns.T])
+    def _slope(self, effect: AxisEffect, at: FloatArray, step: FloatArray) -> FloatArray:
+        """Return the derivative of the outputs (N,) by the parameter of an effect that ``step`` moves."""
+        plain, flown = self._plain, self._case.flown
+        place = effect.places[int(np.argmax(step != 0.0))]
+        if effect.kind in flown.axis.changes:
+            by, owner = plain.sensitivities, plain.assembly.owner
+            return column_of_change(flown, plain.point.setting, place, plain.point.theta, by, owner)
+        setting = moved_to(plain.point.setting, effect.places, at + step)
+        moved = outputs(flown, plain.point._replace(setting=setting), plain.begun)
+        return np.asarray((moved - plain.fitted) / np.sum(step))
+
+    def _linear(self, effect: AxisEffect, columns: FloatArray, begin: FloatArray) -> Start:
+        """Return the best start of an effect whose outputs are linear in its parameters.
+
+        An effect adds to the nuisance parameter at its place, which then returns to its prior.
+        """
+        point, base = self._plain.point, base_of(self._case, effect)
+        places = [f.place for f in self._plain.free]
+        split = [self._without(self._weighed(column)) for column in columns.T]
+        ways, moves = np.column_stack([way for way, _ in split]), np.column_stack([x for _, x in split])
+        now, at = base + begin, np.zeros(len(base))
+        free = {int(k): j for j, k in enumerate(self._free)}
+        for i, place in enumerate(effect.places):
+            if place in places:
+                now[i] = point.setting[place][0]
+                # Beyond a bound the size counts from the bound.
+                at[i] = 0.0 if len(point.theta) + places.index(place) in free else now[i] - base[i]
         prior = np.array(effect.std) ** -2.0
-        values = np.asarray(np.linalg.solve(ways.T @ ways + np.diag(prior), ways.T @ self._begin))
-        way = ways @ values
-        left = self._begin - way
-        point, cost = self._plain.point, self._cost + float(left @ left + prior @ values**2)
-        setting = moved_to(point.setting, effect.places, base_of(self._case, effect) + values)
-        return Start(effect, cost, point._replace(setting=setting), way)
+        pull = ways.T @ self._begin - prior * at
+        change = np.asarray(np.linalg.solve(ways.T @ ways + np.diag(prior), pull))
+        left, size = self._begin - ways @ change, now - base + change
+        for i, place in enumerate(effect.places):
+            if place in places and (j := free.get(len(point.theta) + places.index(place))) is not None:
+                size[i] += self._moves[j] - moves[j] @ change
+        low, high = np.array(effect.variant.bounds).T
+        size = np.clip(size, np.minimum(low, low + base) - base, high)
+        setting = moved_to(point.setting, effect.places, base + size)
+        cost = self._cost + float(left @ left + prior @ (at + change) ** 2)
+        return Start(effect, cost, point._replace(setting=setting), ways @ change)
+
+    def _weighed(self, change: FloatArray) -> FloatArray:
+        """Return a change (N,) of the outputs as weighted rows, with zeros for the priors."""
+        return np.concatenate([change * self._weight, np.zeros(len(self._free))])
 
     def _each(self, effect: AxisEffect) -> Iterator[Start]:
         """Yield every starting value of an effect, each with its cost. The outputs are taken as linear in an
@@ -161,26 +197,31 @@ class Starts:
         begun = [moved_to(point.setting, effect.places, base + values) for values in effect.starts]
         tried = [moved_to(setting, [place], np.array([side])) for setting in begun for side in sides]
         changes = changes_by(self._plain, case.flown, effect.of, tried).reshape(
-            len(begun), len(sides), len(self._begin)
+            len(begun), len(sides), len(self._weight)
         )
         for values, setting, changed in zip(effect.starts, begun, changes, strict=True):
-            ways = [self._without(change * self._weight) for change in changed]
+            ways = [self._without(self._weighed(change))[0] for change in changed]
             shares = [np.clip(way @ self._begin / (way @ way + 1e-12), *SECANT) for way in ways]
             left = [self._begin - share * way for share, way in zip(shares, ways, strict=True)]
             squares = np.array([[float(rest[rows] @ rest[rows]) for rows in self._parts] for rest in left])
             best = np.argmin(squares, axis=0)
             if effect.sides is None:
                 setting = moved_to(setting, effect.places[:1], np.array([base[0] + shares[0] * values[0]]))
+                chosen = left[0]
             else:
                 setting = {**setting, place: np.array(sides)[best]}
-            way = np.sum([ways[k] * rows for k, rows in zip(best, self._parts, strict=True)], axis=0)
-            cost = self._cost + float(np.sum(np.min(squares, axis=0)))
-            yield Start(effect, cost, point._replace(setting=setting), way)
+                chosen = np.mean([left[k] for k in best], axis=0)
+                for k, rows in zip(best, self._parts, strict=True):
+                    chosen[rows] = left[k][rows]
+            way = self._begin - chosen if effect.sides is not None else ways[0]
+            yield Start(effect, self._cost + float(chosen @ chosen), point._replace(setting=setting), way)
 
-    def _without(self, left: FloatArray) -> FloatArray:
-        """Return weighted rows (N,) without the part that all other parameters absorb."""
+    def _without(self, left: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Return weighted rows (N + p,) without the part that all other parameters absorb, and the change of
+        the p free parameters that absorbs it."""
         left = left.copy()
         for rows in self._parts:
             mine = self._own[rows]
             left[rows] -= mine @ np.linalg.lstsq(mine, left[rows], rcond=None)[0]
-        return np.asarray(left - self._columns @ np.linalg.solve(self._information, self._columns.T @ left))
+        moves = np.linalg.solve(self._information, self._columns.T @ left)
+        return np.asarray(left - self._columns @ moves), np.asarray(moves)

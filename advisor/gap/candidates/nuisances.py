@@ -13,7 +13,7 @@ from advisor.process.arrays import FloatArray
 _FILTERS_S = 0.01
 """Prior standard deviation of the delay of an autopilot's filters, s. ArduPlane's default, a second-order
 low-pass of 20 Hz, delays by 11 ms."""
-_REACH = 2.0
+REACH = 2.0
 """Largest delay of an autopilot's filters, in standard deviations of the prior."""
 _OWN_FILTER_S = 0.045
 """Prior standard deviation of the lag of an angle of attack that an autopilot computes, s. Angles of attack
@@ -77,7 +77,7 @@ def _late_imu(p: FloatArray, values: Values, _: PreparedManeuvers) -> None:
 
 
 IMU = Variant(
-    "imu_late", "timing", ("late_s",), ((0.0,),), (1e-3,), ((0.0, _REACH * _FILTERS_S),), 0.0,
+    "imu_late", "timing", ("late_s",), ((0.0,),), (1e-3,), ((0.0, REACH * _FILTERS_S),), 0.0,
     apply_with=_late_imu, prior_std=(_FILTERS_S,), is_nuisance=True,
 )  # fmt: skip
 """Nuisance parameter of every model without an autopilot's angle of attack: the delay that unstated filters
@@ -127,7 +127,7 @@ def filters(flights: PreparedManeuvers) -> Variant:
     channels = [c for c in flights.channels if c in std]
     return Variant(
         "filters", "timing", tuple(f"{c}_late_s" for c in channels), ((0.0,) * len(channels),),
-        (1e-3,) * len(channels), tuple((-_REACH * std[c], _REACH * std[c]) for c in channels), 0.0,
+        (1e-3,) * len(channels), tuple((-REACH * std[c], REACH * std[c]) for c in channels), 0.0,
         entries=tuple(SKEWS[OUTPUTS.index(c)] for c in channels),
         prior_std=tuple(std[c] for c in channels), is_nuisance=True,
     )  # fmt: skip

@@ -21,7 +21,7 @@ def _powers(p: FloatArray, values: Values, _: PreparedManeuvers) -> None:
 
 
 # Mach number, elastic wings or a slipstream: forces grow with another power of the speed than V².
-_ONE_POWER = Variant(
+ONE_POWER = Variant(
     "airspeed_variation", "force_equation", ("exponent",), ((0.0,),), (0.02,), ((-6.0, 6.0),), 0.1,
     entries=("speed_power",), needs=frozenset({"airspeed"}),
 )  # fmt: skip
@@ -35,7 +35,7 @@ _OF_EACH = Variant(
 def _variants(flights: PreparedManeuvers) -> Sequence[Variant]:
     if not _moves(flights):
         return ()
-    return (_ONE_POWER, _OF_EACH) if flights.speed_moves >= _TWO_POWERS else (_ONE_POWER,)
+    return (ONE_POWER, _OF_EACH) if flights.speed_moves >= _TWO_POWERS else (ONE_POWER,)
 
 
 def _moves(flights: PreparedManeuvers) -> bool:

@@ -12,19 +12,19 @@ from advisor.gap.simulator.layout import THROTTLE
 
 THROTTLE_MOVES = 0.02
 """Least change of the throttle within a manoeuvre that makes it informative, as a share of its range."""
-_AT_ONCE = Variant(
+AT_ONCE = Variant(
     "thrust_moment", "moment_equation", ("M_throttle",), ((0.0,),), (0.05,), ((-100.0, 100.0),), 0.0,
     entries=("M_throttle",), needs=frozenset({"throttle"}),
 )  # fmt: skip
-_BEHIND = replace(
-    _AT_ONCE, names=("M_throttle", "lag_s"), starts=((0.0, 0.3), (0.0, 1.0)), steps=(0.05, 0.02),
+BEHIND = replace(
+    AT_ONCE, names=("M_throttle", "lag_s"), starts=((0.0, 0.3), (0.0, 1.0)), steps=(0.05, 0.02),
     bounds=((-100.0, 100.0), (0.0, 5.0)), entries=("M_throttle", "engine_lag_s"), places=("lag_s",),
 )  # fmt: skip
 
 
 def _variants(flights: PreparedManeuvers) -> Sequence[Variant]:
     moves = any(float(np.ptp(f.slow[THROTTLE])) > THROTTLE_MOVES for f in flights.flights)
-    return (_AT_ONCE, _BEHIND) if moves else ()
+    return (AT_ONCE, BEHIND) if moves else ()
 
 
 EFFECT = Effect(

@@ -39,7 +39,7 @@ _OF_EFFECT = {
     "icing.Z_delta_e": 0.15, "icing.M_alpha": 0.15, "icing.M_delta_e": 0.15,
 }  # fmt: skip
 """Prior: standard deviation of each effect's parameters, in the unit of the search."""
-_ARM = {"alpha_vane_offset": 0.2, "accelerometer_offset": 0.1}
+ARM_SHARES = {"alpha_vane_offset": 0.2, "accelerometer_offset": 0.1}
 """Prior: standard deviation of an arm, as a share of the distance flown per radian of the short period.
 
 A small UAV flies 2.5 m in one radian of its short period. A jet with a nose boom of 13 m flies 50 m."""
@@ -77,7 +77,7 @@ def with_sizes(variant: Variant, derivatives: FloatArray, flights: PreparedManeu
         "Z_alpha2": BENT * z_alpha / alpha, "Z_alpha3": BENT * z_alpha / alpha**2,
         "M_throttle": 0.5 * m_delta * delta, "M_h": m_delta * delta, "Z_h": z_alpha * alpha,
         "at_s": span, "over_s": span, "rate_per_s": 0.2 / span,
-        "arm_m": _ARM.get(variant.effect, 0.0) * way_m,
+        "arm_m": ARM_SHARES.get(variant.effect, 0.0) * way_m,
     }  # fmt: skip
     stds = [
         width_of(variant.effect, name, of_number.get(name, std))

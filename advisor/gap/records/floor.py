@@ -11,7 +11,7 @@ from advisor.process.arrays import FloatArray
 
 TOLERANCE = 0.02
 """Prior: noise that is assumed in a record filtered before storage, as a share of the channel's peak."""
-_SMOOTH = 1e-3
+SMOOTH = 1e-3
 """White noise over the channel's peak below which a channel was filtered, because no instrument is so
 quiet."""
 _RAW = 1e-2
@@ -22,7 +22,7 @@ def prefiltered(flights: PreparedManeuvers) -> dict[str, bool]:
     """Return for each channel whether it was filtered or is smoother than an instrument's white noise."""
     # An angle of attack that an autopilot computes is smooth by nature, and says nothing of other channels.
     filtered = flights.alpha_is_smoothed and not flights.alpha_is_derived
-    smooth = flights.white < (_RAW if filtered else _SMOOTH) * flights.peaks
+    smooth = flights.white < (_RAW if filtered else SMOOTH) * flights.peaks
     smooth |= flights.alpha_is_smoothed & (np.array(flights.channels) == "alpha")
     return dict(zip(flights.channels, smooth.tolist(), strict=True))
 

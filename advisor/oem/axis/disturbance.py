@@ -60,7 +60,7 @@ class Course(NamedTuple):
 def blocks_of(fit: Linear) -> Iterator[str]:
     """Yield the blocks whose disturbance these records can show."""
     axis = fit.problem.axis
-    yield from filter(fit.problem.flies, axis.inputs)
+    yield from (axis.blocks.get(name, name) for name in axis.inputs if fit.problem.flies(name))
     yield from axis.equations
     if axis.hidden:  # a gust adds its angle to that state
         yield AIR
@@ -135,7 +135,7 @@ def _outputs(fit: Linear, m: int, block: str, course: FloatArray) -> Mapping[str
         x[i + 1] += step[:n, :n] @ x[i]
     seen = np.einsum("os,nsk->onk", linear.seen, x)
     seen += (linear.seen_rates @ drives)[:, None, None] * course
-    if block == AIR:  # a vane sees the gust itself
+    if block == AIR and not fit.problem.is_computed:  # a vane sees the gust itself
         seen[axis.outputs.index(axis.hidden)] += course
     return dict(zip(axis.outputs, seen, strict=True))
 
@@ -145,4 +145,5 @@ def _drives(axis: Axis, block: str, linear: Motion) -> FloatArray:
     if block in axis.equations:
         return np.array([float(state == axis.equations[block]) for state in axis.states])
     columns = (*axis.states, *axis.inputs)
-    return np.asarray(linear.aerodynamic[:, columns.index(axis.hidden if block == AIR else block)])
+    control = {block: name for name, block in axis.blocks.items()}.get(block, block)
+    return np.asarray(linear.aerodynamic[:, columns.index(axis.hidden if block == AIR else control)])

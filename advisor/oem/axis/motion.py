@@ -32,9 +32,9 @@ class AxisMotion:
         """Return the measurements as stacked rows."""
         return lay_out(problem, causes_of(self.axis))
 
-    def floor(self, _: AxisAssembly, /) -> FloatArray:
+    def floor(self, laid: AxisAssembly, /) -> FloatArray:
         """Return the least standard deviation of each output, shape (outputs,), SI."""
-        return self.axis.least
+        return laid.least
 
     def begins(self, laid: AxisAssembly, /) -> FloatArray:
         """Return the time of the first event of each record, shape (m,), s."""
@@ -48,7 +48,7 @@ class AxisMotion:
             # A vane sees the gust itself, and forces see it through the motion's equations.
             gust = linear.aerodynamic[:, axis.states.index(axis.hidden)]
             air_seen = linear.seen_rates @ gust
-            air_seen[axis.outputs.index(axis.hidden)] += 1.0
+            air_seen[axis.outputs.index(axis.hidden)] += not problem.is_computed
         forced = np.array([axis.states.index(state) for state in axis.letters.values()])
         return Linear(linear.matrix, linear.seen, gust, air_seen, forced)
 
@@ -72,8 +72,8 @@ class AxisMotion:
         y, g, motion = simulated
 
         def column(x: Parameter) -> FloatArray:
-            if x.place[0] == TERM:
-                return _by_term(x.entry, problem, laid, (shared, local))
+            if x.place[0] == TERM or x.place in self.axis.moments:
+                return _by_force(x.place, problem, laid, (shared, local))
             made = column_of(x.place, problem.at(x.place), laid, local, simulated)
             return _late(x.place[0], laid, y) if made is None else made
 
@@ -147,14 +147,16 @@ def _late(output: str, laid: AxisAssembly, y: FloatArray) -> FloatArray:
     return column
 
 
-def _by_term(
-    text: str, problem: AxisProblem, laid: AxisAssembly, at: tuple[FloatArray, FloatArray]
+def _by_force(
+    place: Place, problem: AxisProblem, laid: AxisAssembly, at: tuple[FloatArray, FloatArray]
 ) -> FloatArray:
-    """Return the derivative of the outputs by the coefficient of an added term, shape (N,)."""
-    alone = {**problem.values, **{(TERM, other): float(other == text) for other in problem.terms}}
+    """Return the derivative (N,) of the outputs by the factor of an added term or of a known moment."""
+    forces = [(TERM, text) for text in problem.terms] + [*problem.axis.moments]
+    alone = {**problem.values, **{other: float(other == place) for other in forces}}
     forced = lay_out(replace(problem, values=alone)).grid.forced
     step = STEP / max(float(np.max(np.abs(forced))), 1e-300)
-    ends = [laid.grid._replace(forced=laid.grid.forced + by * forced) for by in (step, -step)]
+    now = laid.grid.forced if len(laid.grid.forced) else np.zeros_like(forced)
+    ends = [laid.grid._replace(forced=now + by * forced) for by in (step, -step)]
     up, down = (outputs_of(replace(laid, grid=end), *at) for end in ends)
     return (up - down) / (2.0 * step)
 

@@ -17,7 +17,7 @@ import numpy as np
 from advisor.aircraft.aircraft import Aircraft
 from advisor.flight.instruments.lateness import lateness_std
 from advisor.model.axis import Place
-from advisor.oem.axis.problem import COMMAND, TERM, AxisProblem
+from advisor.oem.axis.problem import COMMAND, TERM, AxisProblem, AxisRecord
 from advisor.oem.extra import Prior
 from advisor.oem.instruments import FLAT, KNOWN_TO, PLACE_S, USUAL_LAG
 from advisor.oem.rows import Signal
@@ -107,7 +107,7 @@ def _parameters(problem: AxisProblem, aircraft: Aircraft) -> Iterator[Parameter]
     for name in axis.clocks:
         if measured := [r.outputs[name] for r in records if name in r.outputs]:
             yield _clock((name, "delay_s"), measured)
-            if name in axis.arms and stated_arm_m(name, aircraft) is None:
+            if name in axis.arms and stated_arm_m(name, aircraft) is None and not problem.is_computed:
                 # An arm moves the outputs by a second's turn as the air speed does.
                 speed = problem.mean_airspeed_m_s
                 yield Parameter((name, "arm_m"), Prior(0.0, PLACE_S * speed), LARGEST_MOVE_S * speed)
@@ -116,9 +116,17 @@ def _parameters(problem: AxisProblem, aircraft: Aircraft) -> Iterator[Parameter]
         if stated != 0.0:
             prior = Prior(stated, KNOWN_TO * stated) if stated else USUAL_LAG
             yield Parameter((name, "lag_s"), prior, LARGEST_MOVE_S, (0.0, LONGEST_LAG_S))
+    for place, moment in axis.moments.items():
+        if np.isfinite(moment.std) and all(moves_in(r, moment.signals) for r in records):
+            yield Parameter(place, Prior(moment.mean, moment.std))
     if moving and problem.tells_force:
         yield from (Parameter(at, Prior(0.0, std), LARGEST_MOVE_S) for at, std in axis.errors.items())
     yield from (Parameter((TERM, term), FLAT) for term in problem.terms)
+
+
+def moves_in(record: AxisRecord, signals: Sequence[str]) -> bool:
+    """Return whether a record has signals whose product moves."""
+    return all(name in record.signals and np.ptp(record.signals[name].y) > 0.0 for name in signals)
 
 
 def _clock(place: Place, signals: Sequence[Signal]) -> Parameter:

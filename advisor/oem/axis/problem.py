@@ -8,6 +8,7 @@ import numpy as np
 from advisor.aircraft.added_term import parse_term
 from advisor.model.axis import Axis, Linear, Place
 from advisor.model.axis_response import AxisGrid
+from advisor.oem.lag import lagged
 from advisor.oem.rows import (
     Laid,
     Piece,
@@ -73,6 +74,11 @@ class AxisProblem:
     """Derivatives held at a value, by name."""
     means: Mapping[str, float] = field(default_factory=dict)
     """Value from which a signal counts in the terms, by the signal's name."""
+    floor: Mapping[str, float] = field(default_factory=dict)
+    """Least standard deviation of outputs that were filtered before storage, where above the axis' own."""
+    is_computed: bool = False
+    """Whether the autopilot computes the measured hidden state from its own rates and forces, so that the
+    state does not see gusts."""
 
     def at(self, place: Place) -> float:
         """Return the value at a place; zero, which is an ideal instrument, for a missing one."""
@@ -86,6 +92,16 @@ class AxisProblem:
     def terms(self) -> dict[str, float]:
         """Coefficient of each term that the user added, by its text."""
         return {text: value for (of, text), value in self.values.items() if of == TERM}
+
+    @property
+    def moments(self) -> dict[Place, float]:
+        """Factors of the known signals that drive the rates, by their place, without zeros."""
+        return {place: value for place in self.axis.moments if (value := self.at(place)) != 0.0}
+
+    @property
+    def least(self) -> FloatArray:
+        """Least standard deviation of each output, shape (outputs,), SI."""
+        return np.maximum(self.axis.least, [self.floor.get(name, 0.0) for name in self.axis.outputs])
 
     @property
     def tells_force(self) -> bool:
@@ -175,6 +191,8 @@ class AxisAssembly(Laid):
     grid: AxisGrid
     begin: FloatArray
     """Shape (m,): time of the first event of each record, s, which is the time of the initial states."""
+    least: FloatArray
+    """Shape (outputs,): least standard deviation of each output's noise, SI."""
     causes: tuple[Place, ...] = ()
     """Places by which the derivatives of the inputs are laid out."""
 
@@ -201,7 +219,10 @@ def lay_out(problem: AxisProblem, causes: Sequence[Place] = ()) -> AxisAssembly:
         turning=axis.turning_rows,
         seen=axis.seen_rows,
         scale=np.array([1.0 + problem.at((name, "scale")) for name in axis.outputs]),
-        forced=laid.columns["forced"] if problem.terms else np.empty((0, len(axis.states))),
+        factor=np.empty((0, len(axis.place))),
+        forced=laid.columns["forced"]
+        if problem.terms or problem.moments
+        else np.empty((0, len(axis.states))),
         row=laid.row,
         place=axis.place,
         bias=axis.bias,
@@ -215,6 +236,7 @@ def lay_out(problem: AxisProblem, causes: Sequence[Place] = ()) -> AxisAssembly:
         names=axis.names,
         grid=grid,
         begin=np.array([piece.t[0] for piece in pieces]),
+        least=problem.least,
         causes=tuple(causes),
         **laid.measurements,
         free=np.array([*_free(problem, measured)], np.int64),
@@ -273,16 +295,28 @@ def _known(record: AxisRecord, problem: AxisProblem, t: FloatArray, middle: Floa
 
 
 def forced(record: AxisRecord, problem: AxisProblem, middle: FloatArray, inputs: FloatArray) -> FloatArray:
-    """Return what the added terms contribute to the rates of the states, shape (E, n)."""
+    """Return what added terms and known moments contribute to the rates of the states, shape (E, n)."""
     axis = problem.axis
     rates = np.zeros((len(inputs), len(axis.states)))
+    for place, value in problem.moments.items():
+        moment, lag = axis.moments[place], problem.at((place[0], "lag_s"))
+        if all(name in record.signals for name in moment.signals):
+            driving = [_behind(record.signals[name], lag).at(middle) for name in moment.signals]
+            rates[:, axis.states.index(moment.state)] += padded(value * np.prod(driving, axis=0))
     if problem.terms:
         surfaces = (inputs[:-1] + inputs[1:]).T / 2.0
         values = {name: finite(signal).at(middle) for name, signal in problem.spoken(record).items()}
         values |= dict(zip(axis.controls, surfaces, strict=True))
         rows = [axis.states.index(state) for state in axis.letters.values()]
-        rates[:, rows] = forcing(problem.terms, tuple(axis.letters), problem.means, values)
+        rates[:, rows] += forcing(problem.terms, tuple(axis.letters), problem.means, values)
     return rates
+
+
+def _behind(signal: Signal, lag_s: float) -> Signal:
+    """Return a signal behind a first-order lag, as the thrust behind the throttle."""
+    if not lag_s > 0.0:
+        return signal
+    return Signal(signal.t, lagged(np.diff(signal.t), signal.y[:-1], signal.y[1:], lag_s, signal.y[0]))
 
 
 def _moved(

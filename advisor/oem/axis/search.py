@@ -209,7 +209,7 @@ def _resumed(
 def _has_diverged(fit: Fit) -> bool:
     """Return whether a fit explains the outputs worse than a constant does."""
     z, channel, noise = fit.assembly.z, fit.assembly.channel, fit.optimum.noise
-    least = fit.problem.axis.least
+    least = fit.assembly.least
     each = ((z[channel == c], least[c], noise[c]) for c in np.unique(channel))
     gain = sum(len(y) * float(np.log(max(float(np.std(y)), floor) / left)) for y, floor, left in each)
     return not gain >= 0.0

@@ -37,7 +37,7 @@ def starting_point(problem: AxisProblem) -> tuple[FloatArray, FloatArray]:
     whole, in_parts = equations_of(problem), equations_of(_in_parts(problem))
     for letter, state in axis.letters.items():
         if in_parts[letter]:
-            own = [k for k, term in enumerate(axis.shared) if term.state == state]
+            own = [k for k, t in enumerate(axis.shared) if t.state == state and t.factor != CONSTANT]
             shared[own] = regressed(in_parts[letter])[0]
             constants = [coefficients[0] for coefficients in regressed(whole[letter])[1]]
             of = has_force if state == axis.hidden else slice(None)
@@ -115,8 +115,12 @@ class _Motion:
             record.outputs[axis.force].at(t) / self.speed if self.has_force else np.zeros(len(t))
         )
         if axis.hidden in record.outputs:
-            arm = around[axis.hidden, "arm_m"] / self.speed
-            self.signals[axis.hidden] = record.outputs[axis.hidden].at(t) - arm * self.signals[axis.yaw]
+            by_turning = (
+                axis.factors[r.factor](around) * self.signals[r.state]
+                for r in axis.seen
+                if r.output == axis.hidden != r.state and r.number is None
+            )
+            self.signals[axis.hidden] = record.outputs[axis.hidden].at(t) - sum(by_turning)
         elif self.has_force:
             self.signals[axis.hidden] = integrated(t, turn + self.force_rate)
         else:
@@ -138,7 +142,7 @@ class _Motion:
 
     def columns(self, state: str) -> list[FloatArray]:
         """Return the factors (n,) of the derivatives of one force or moment."""
-        terms = [term for term in self.axis.shared if term.state == state]
+        terms = [t for t in self.axis.shared if t.state == state and t.factor != CONSTANT]
         return [self.ratio**term.power * self.signals[term.factor] for term in terms]
 
     def own(self) -> FloatArray:

@@ -122,12 +122,7 @@ class Model:
         response = self.motion.respond(problem, laid, shared, local, self.parameters)
         if response is None:
             return None
-        measured, records = np.unique(laid.channel), []
-        for m, rows in enumerate(laid.blocks):
-            motion = self.motion.linear(problem, shared, m)
-            order = rows.start + np.argsort(laid.t[rows], kind="stable")
-            channel = np.searchsorted(measured, laid.channel[order])
-            records.append(Record(motion, motion.all_seen[measured], order, steps_of(laid.t[order]), channel))
+        records, measured = records_of(self.motion, problem, laid, shared)
         return Setting(
             problem,
             laid,
@@ -141,6 +136,19 @@ class Model:
             measured,
             _floor(laid, response.y),
         )
+
+
+def records_of(
+    motion: DrivenMotion, problem: Any, laid: Laid, shared: FloatArray
+) -> tuple[list[Record], Index]:
+    """Return the rows of each manoeuvre in order of time, and the indices of the measured outputs."""
+    measured, records = np.unique(laid.channel), []
+    for m, rows in enumerate(laid.blocks):
+        linear = motion.linear(problem, shared, m)
+        order = rows.start + np.argsort(laid.t[rows], kind="stable")
+        channel = np.searchsorted(measured, laid.channel[order])
+        records.append(Record(linear, linear.all_seen[measured], order, steps_of(laid.t[order]), channel))
+    return records, measured
 
 
 def _floor(laid: Laid, y: FloatArray) -> FloatArray:

@@ -199,7 +199,8 @@ def test_two_effects_at_once_are_both_said_and_stand_before_the_alternatives():
 
 def test_effects_that_set_the_same_number_are_never_two_causes():
     first, same, elsewhere = (
-        SimpleNamespace(places=places) for places in ((("p", "scale"),), (("p", "scale"),), (("r", "scale"),))
+        SimpleNamespace(places=((of, "scale"),), name=name)
+        for of, name in (("p", "a"), ("p", "b"), ("r", "c"))
     )
     assert flight_of_axis._beside(SimpleNamespace(effect=first), [first, same, elsewhere]) == [elsewhere]
 
@@ -247,7 +248,7 @@ class TwoOptima:
 def searched(monkeypatch, heights):
     """Return the plain model's fit after the search among two optima, and the parts that failed."""
     case = TwoOptima(heights)
-    start = SimpleNamespace(name="lag", price=0.0, saved=0.0)
+    start = SimpleNamespace(name="lag", price=0.0)
     monkeypatch.setattr(flight_of_axis, "colour_share", lambda fit, **_: fit.share)
     monkeypatch.setattr(flight_of_axis, "Starts", lambda *_, **__: SimpleNamespace(of_each=[start]))
     monkeypatch.setattr(flight_of_axis, "base_of", lambda *_: np.zeros(1))
@@ -296,7 +297,6 @@ def side_model(fit, nats=0.0, alternative=None):
 def test_the_air_is_weighed_in_the_residual_of_the_likeliest_explanation(monkeypatch, nats, likeliest):
     of, still = [], SimpleNamespace(likelihood=0.0)
     monkeypatch.setattr(flight_of_axis, "gusts_of", lambda fit, *_: of.append(fit) or still)
-    monkeypatch.setattr(flight_of_axis, "courses_of", lambda *_: ())
     monkeypatch.setattr(flight_of_axis, "coloured_likelihood", lambda _: 0.0)
     monkeypatch.setattr(flight_of_axis, "within_model_error", lambda _, everyone, error: everyone)
     monkeypatch.setattr(AxisFlight, "_wide", lambda *_: None)
@@ -354,7 +354,7 @@ def test_a_pair_counts_where_it_makes_up_for_the_second_effects_share_of_the_pri
 
 @pytest.mark.parametrize(("angle", "kind"), [(1e-4, "none"), (0.05, "air")])
 def test_gusts_far_above_the_natural_ones_are_the_answer_of_a_flight_with_nothing_else(angle, kind):
-    row = Row(NONE, SimpleNamespace(gusts=SimpleNamespace(air=SimpleNamespace(angle=angle))), {})
+    row = Row(NONE, SimpleNamespace(gusts=SimpleNamespace(angle=angle)), {})
     assert diagnosis._named_air(LATERAL, row).alternative.kind == kind
 
 
@@ -369,7 +369,7 @@ def test_a_second_cause_is_as_probable_as_both_together(monkeypatch):
 
 def test_the_gap_of_an_output_and_of_a_manoeuvre_is_the_mean_square_error_over_the_noise_minus_one():
     owner, channel = np.array([0, 0, 0, 0, 1, 1]), np.array([1, 1, 2, 2, 1, 1])
-    laid = SimpleNamespace(maneuvers=2, owner=owner, channel=channel, axis=LATERAL)
+    laid = SimpleNamespace(maneuvers=2, owner=owner, channel=channel, axis=LATERAL, least=LATERAL.least)
     error, noise = np.array([0.1, 0.1, 0.3, 0.3, 0.2, 0.2]), np.array([0.0, 0.05, 0.1, 0.1, 0.1])
     fit = SimpleNamespace(assembly=laid, noise=noise, residual=error)
     after = sums(fit, 0.25 * error**2)

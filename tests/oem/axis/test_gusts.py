@@ -7,8 +7,7 @@ import pytest
 
 from advisor.model.axes.lateral import LATERAL
 from advisor.oem.axis import search as axis_search
-from advisor.oem.axis.disturbance import Course, Linear, courses_of
-from advisor.oem.axis.gusts import Air, Integrated, Sums, likeliest
+from advisor.oem.axis.disturbance import Linear, courses_of
 from advisor.oem.axis.problem import AxisProblem
 from advisor.oem.axis.search import solve
 from advisor.oem.driven_motion import errors
@@ -82,39 +81,3 @@ def test_a_scale_that_residuals_show_counts_less_than_one_that_the_aileron_absor
     L_beta, L_p, L_delta_a, *_ = std_of(solve(problem)) / widths
     assert max(L_beta, L_p) < 2.0
     assert L_delta_a > 5.0
-
-
-def test_slopes_of_the_likelihood_are_its_differences():
-    rng, outputs = np.random.default_rng(3), len(LATERAL.outputs)
-    channel = np.repeat(np.arange(outputs), 30)
-    course = Course(0.1 * np.arange(8), rng.standard_normal((len(channel), 8)))
-    sums = [Sums.of(channel, 5, rng.standard_normal((len(channel), 4)), course)]
-    prior = Integrated(np.array([0.0, 1.0, 4.0]), np.array([0.0, 0.5, -0.2]))
-    place, step = np.log([0.5, 1.0, 2.0, 1.5, 0.8, 0.3, 0.6]), 1e-5
-
-    def cost(x):
-        return Air(np.exp(x[:-2]), *np.exp(x[-2:])).cost(sums, prior)
-
-    differences = [
-        (cost(place + move)[0] - cost(place - move)[0]) / (2.0 * step) for move in step * np.eye(len(place))
-    ]
-    assert cost(place)[1] == pytest.approx(differences, rel=1e-6)
-
-
-@pytest.mark.parametrize("memory_s", [0.7, 2.4])
-def test_gusts_of_any_memory_keep_their_size(memory_s):
-    rng = np.random.default_rng(4)
-    still = solve(problem_of(rng))
-    laid, noise = still.assembly, still.optimum.noise
-    fit = Linear(still.problem, laid, vector(JET), still.sensitivities, noise)
-    (course,) = courses_of(fit)
-    far = np.abs(course.knots[:, None] - course.knots)
-    root = np.linalg.cholesky(np.exp(-far / memory_s))
-    sums = []
-    for _ in range(6):
-        blown = 2.0 * GUSTS_RAD * course.columns @ root @ rng.standard_normal(len(far))
-        residual = blown + noise[laid.channel] * rng.standard_normal(len(laid.z))
-        left = fit.unabsorbed(0, residual[:, None])
-        sums.append(Sums.of(laid.channel, 5, left, course))
-    air = likeliest(sums, noise, Integrated(np.empty(0), np.empty(0)))
-    assert air.angle == pytest.approx(2.0 * GUSTS_RAD, rel=0.25)
