@@ -223,7 +223,7 @@ class AxisFlight:
         lead = int(np.argmax([m.evidence.either for m in still]))
         fit = still[lead].fit
         air = gusts_of(fit, self.case.flown)
-        blown = within_model_error(self, [self._blown(m, air) for m in still], 0.0)
+        blown = within_model_error(self, [self._blown(m, air, stage.heat) for m in still], 0.0)
         gain = air.likelihood - coloured_likelihood(fit)
         over = still[lead].evidence.either + gain - blown[lead].evidence.either
         first, *others = (replace(m.more(over), likelihood=m.likelihood + over) for m in blown)
@@ -232,7 +232,7 @@ class AxisFlight:
     def _wide(self, fit: Fit) -> Known:
         return self.case.prior_of(ERROR_IF_WRONG, fit.free)
 
-    def _blown(self, model: AxisModel, air: Gusts) -> AxisModel:
+    def _blown(self, model: AxisModel, air: Gusts, heat: float) -> AxisModel:
         """Return an explanation with gusts in addition, at its optimum in these gusts.
 
         A fit in white noise has absorbed part of the gusts in the derivatives, and lies far from the optimum
@@ -250,9 +250,11 @@ class AxisFlight:
                 break
             model = replace(model, fit=fit)
         # At the optimum the gradient balances the prior's. Delays have kinks, where no step leads further.
-        gradient = wide.precision * (model.fit.values - wide.mean)
-        evidence, natural = self._weighed(model.fit, model.effect, gusts.likelihood, gusts.matrix, gradient)
-        blown = replace(model, gusts=gusts, evidence=evidence, natural=natural, likelihood=gusts.likelihood)
+        gradient = wide.precision * (model.fit.values - wide.mean) / heat
+        # What no model has is an error of every model, in gusts as in still air.
+        likelihood, matrix = gusts.likelihood / heat, gusts.matrix / heat
+        evidence, natural = self._weighed(model.fit, model.effect, likelihood, matrix, gradient)
+        blown = replace(model, gusts=gusts, evidence=evidence, natural=natural, likelihood=likelihood)
         return replace(blown.more(model.beyond), model_error=0.0)
 
     def _weighed(
