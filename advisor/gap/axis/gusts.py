@@ -5,6 +5,7 @@ Kalman filter of ``oem.driven_motion``, in which a gust drives the motion, and t
 coloured noise.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 
@@ -99,15 +100,17 @@ def _size_std(setting: Setting, noise: Noise) -> float:
     return float(noise.gust * min(_STEP / max(bend, 1e-300) ** 0.5, 1.0))
 
 
-def _terms(setting: Setting, noise: Noise) -> tuple[FloatArray, FloatArray]:
+def _terms(setting: Setting, noises: Sequence[Noise]) -> tuple[FloatArray, FloatArray]:
     """Return the whitened residual, without what trims and initial states absorb, and the log variance of its
-    innovations, both of shape (N,)."""
+    innovations with each noise, both of shape (n, k)."""
     columns = np.column_stack([setting.residual, setting.sensitivities[:, setting.assembly.own]])
-    parts, volume = [], []
-    for _, white, std in setting.innovations(columns, noise, MOST_MANEUVERS):
-        parts.append(_alone(white))
-        volume.append(2.0 * np.log(std))
-    return np.concatenate(parts), np.concatenate(volume)
+    records = setting.records[-MOST_MANEUVERS:]
+    rows = [columns[record.order] for record in records]
+    each = [[setting.gains(record, noise) for record in records] for noise in noises]
+    pairs = ([(_alone(g.innovations(y)), g.std) for g, y in zip(gains, rows, strict=True)] for gains in each)
+    parts = [tuple(map(np.concatenate, zip(*parts, strict=True))) for parts in pairs]
+    white, std = (np.column_stack(part) for part in zip(*parts, strict=True))
+    return white, 2.0 * np.log(std)
 
 
 def _alone(white: FloatArray) -> FloatArray:
@@ -117,8 +120,8 @@ def _alone(white: FloatArray) -> FloatArray:
 
 
 def _cost(setting: Setting, noise: Noise) -> float:
-    white, volume = _terms(setting, noise)
-    return float(np.sum(volume) + white @ white)
+    white, volume = _terms(setting, [noise])
+    return float(np.sum(volume) + np.sum(white**2))
 
 
 def coloured_likelihood(fit: Fit) -> float:

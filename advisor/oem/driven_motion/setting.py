@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from advisor.model.response import Index
-from advisor.oem.driven_motion.kalman_filter import driven_filter, filtered_by_each, steps_of
+from advisor.oem.driven_motion.kalman_filter import Gains, driven_filter, filtered_by_each, steps_of
 from advisor.oem.driven_motion.linear import DrivenMotion, Linear
 from advisor.oem.driven_motion.noise import RANGE, Noise
 from advisor.oem.extra import Extra, Parameter
@@ -70,14 +70,17 @@ class Setting:
         own, common = self.sensitivities[:, self.assembly.own], self.sensitivities[:, self.assembly.common]
         return np.column_stack([self.residual, own, common, self.extra.columns])
 
+    def gains(self, record: Record, noise: Noise) -> Gains:
+        """Return the Kalman gains of a record's rows in order of time."""
+        white = np.maximum(noise.white, self.floor)[self.measured] ** 2
+        at = record.steps, record.channel, record.seen, noise.driving(record.motion)
+        return driven_filter(*at, white[record.channel], noise.coloured[self.measured], noise.memory_s)
+
     def whitened(self, columns: FloatArray, noise: Noise) -> tuple[FloatArray, float]:
         """Return the whitened ``columns`` (N, k) and the log determinant."""
         out, volume = np.empty(columns.shape), 0.0
-        white = np.maximum(noise.white, self.floor)[self.measured] ** 2
-        coloured = noise.coloured[self.measured]
         for record in self.records:
-            at = record.steps, record.channel, record.seen, noise.driving(record.motion)
-            gains = driven_filter(*at, white[record.channel], coloured, noise.memory_s)
+            gains = self.gains(record, noise)
             out[record.order] = gains.innovations(columns[record.order])
             volume += 2.0 * float(np.sum(np.log(gains.std)))
         return out, volume
