@@ -111,7 +111,7 @@ def carry(
     powers: FloatArray, turning: Index, known: FloatArray, z: FloatArray, changed_start: FloatArray,
     changed_slope: FloatArray, e: int, first: int, by: FloatArray, terms: FloatArray,
 ) -> None:  # fmt: skip
-    """Advance the sensitivities ``by`` (n, w) of the states over one step, with causes from ``first`` on."""
+    """Advance the sensitivities ``by`` (n, w) of the states over one step. The causes begin at ``first``."""
     n, width, causes, inputs = len(initial), by.shape[1], changed_start.shape[1], changed_start.shape[2]
     for i in range(n):
         for k in range(width):

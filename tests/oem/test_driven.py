@@ -175,19 +175,15 @@ def test_noises_abreast_give_the_innovations_that_each_gives_alone() -> None:
     rng, n = np.random.default_rng(3), 300
     kind, channel = np.tile([1, 0, 2], n // 3), np.tile([0, 1, 0], n // 3)
     at = (np.array([0.0, 0.02, 0.05]), kind), channel, np.array([[1.0, 0.0], [0.3, 1.0]])
-    column, sizes = rng.standard_normal(n), rng.uniform(0.5, 2.0, (11, 6))
-    driving = [
-        (np.array([[-x, 1.0], [-9.0, -2.0]]), np.array([y, 0.2]), np.array([0.0, y])) for x, y, *_ in sizes
-    ]
-    white, coloured, memory_s = 1e-2 * sizes[:, 2:4], 0.1 * sizes[:, 3:5], sizes[:, 5]
-    together = filtered_by_each(*at, driving, white, coloured, memory_s, column)
-    apart = [
-        filtered_by_each(
-            *at, driving[k : k + 1], white[k : k + 1], coloured[k : k + 1], memory_s[k : k + 1], column
-        )
-        for k in range(len(sizes))
-    ]
-    assert np.allclose(together, np.concatenate(apart, axis=-1), rtol=1e-9, atol=1e-9)
+    column, sizes = rng.standard_normal(n), rng.uniform(0.5, 2.0, (11, 5))
+    driving = [(np.array([[-x, 1.0], [-9.0, -2.0]]), np.array([y, 0.2]), sizes[0, :2]) for x, y, *_ in sizes]
+
+    def by(k: slice) -> np.ndarray:
+        noises = driving[k], 1e-2 * sizes[k, 1:3], 0.1 * sizes[k, 2:4], sizes[k, 4]
+        return np.array(filtered_by_each(*at, *noises, column))
+
+    apart = [by(slice(k, k + 1)) for k in range(len(sizes))]
+    assert np.allclose(by(slice(None)), np.concatenate(apart, axis=-1), rtol=1e-9, atol=1e-9)
 
 
 def test_in_moving_air_the_estimate_has_unknown_forces_and_in_still_air_none() -> None:

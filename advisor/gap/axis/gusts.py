@@ -101,8 +101,10 @@ def _size_std(setting: Setting, noise: Noise) -> float:
 
 
 def _terms(setting: Setting, noises: Sequence[Noise]) -> tuple[FloatArray, FloatArray]:
-    """Return the whitened residual, without what trims and initial states absorb, and the log variance of its
-    innovations with each noise, both of shape (n, k)."""
+    """Return the whitened residual and the log variance of its innovations with each noise, (n, k) both.
+
+    Trims and initial states absorb a part of the residual, which is left out.
+    """
     columns = np.column_stack([setting.residual, setting.sensitivities[:, setting.assembly.own]])
     records = setting.records[-MOST_MANEUVERS:]
     rows = [columns[record.order] for record in records]

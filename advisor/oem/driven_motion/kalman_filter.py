@@ -20,6 +20,8 @@ _LONGEST = 0.25
 """Numerical: largest product of a rate of the motion and a time step for a series of third order."""
 _ABREAST = 8
 """Numerical: number of noises that fills the processor's vectors."""
+_ALONE = (0,)
+"""Says that a single noise passes."""
 
 
 @kernel(error_model="numpy", fastmath={"contract"})
@@ -44,49 +46,6 @@ def _over(dt: float, matrix: FloatArray, drive: FloatArray) -> tuple[FloatArray,
         fresh = fresh + step @ fresh @ step.T
         step = step @ step
     return step, fresh
-
-
-@kernel(error_model="numpy", fastmath={"contract"})
-def _propagate(
-    P: FloatArray, moved: FloatArray, step: FloatArray, fresh: FloatArray, keep: float, coloured: FloatArray
-) -> None:
-    """Advance the covariance by a step; ``moved``, shape (s, s + o), is work space."""
-    s, n = len(step), len(P)
-    for a in range(s):
-        for b in range(n):
-            total = 0.0
-            for c in range(s):
-                total += step[a, c] * P[c, b]
-            moved[a, b] = total
-    for a in range(s):
-        for b in range(a + 1):
-            total = fresh[a, b]
-            for c in range(s):
-                total += moved[a, c] * step[b, c]
-            P[a, b] = P[b, a] = total
-        for b in range(s, n):
-            P[a, b] = P[b, a] = keep * moved[a, b]
-    for a in range(s, n):
-        for b in range(s, n):
-            P[a, b] *= keep * keep
-        P[a, a] += coloured[a - s] ** 2 * (1.0 - keep * keep)
-
-
-@kernel(error_model="numpy", fastmath={"contract"})
-def _seen(P: FloatArray, gain: FloatArray, seen: FloatArray, own: int) -> float:
-    """Return the variance of an output without its white noise; write the covariance of the states with it.
-
-    ``own`` is the state of the output's coloured noise.
-    """
-    for a in range(len(gain)):
-        total = P[a, own]
-        for b in range(len(seen)):
-            total += P[a, b] * seen[b]
-        gain[a] = total
-    variance = gain[own]
-    for b in range(len(seen)):
-        variance += seen[b] * gain[b]
-    return float(variance)
 
 
 class Gains(NamedTuple):
@@ -126,14 +85,10 @@ def steps_of(t: FloatArray) -> tuple[FloatArray, IntArray]:
 
 
 def driven_filter(
-    steps: tuple[FloatArray, IntArray],
-    channel: IntArray,
-    seen: FloatArray,
-    driving: tuple[FloatArray, FloatArray, FloatArray],
-    white: FloatArray,
-    coloured: FloatArray,
+    steps: tuple[FloatArray, IntArray], channel: IntArray, seen: FloatArray,
+    driving: tuple[FloatArray, FloatArray, FloatArray], white: FloatArray, coloured: FloatArray,
     memory_s: float,
-) -> Gains:
+) -> Gains:  # fmt: skip
     """Return the Kalman gains of rows in order of time.
 
     Parameters
@@ -157,80 +112,31 @@ def driven_filter(
     """
     lengths, kind = steps
     keep = np.exp(-lengths / memory_s)
-    moves, gain, std = _gains(lengths, keep, kind, channel, *driving, seen, white, coloured)
-    return Gains(moves, keep, kind, channel, seen, gain, std)
+    matrix, begun, drive, *measured = (part[..., None] for part in (*driving, white, coloured**2))
+    at, nothing = (_ALONE, lengths, keep[:, None], kind, channel, seen), np.zeros(len(channel))
+    moves, gain, std, _ = _filtered(*at, matrix, begun, drive, measured[0], measured[1], nothing)
+    return Gains(moves[..., 0], keep, kind, channel, seen, gain, std[:, 0])
 
 
 def filtered_by_each(
-    steps: tuple[FloatArray, IntArray],
-    channel: IntArray,
-    seen: FloatArray,
-    driving: Sequence[tuple[FloatArray, FloatArray, FloatArray]],
-    white: FloatArray,
-    coloured: FloatArray,
-    memory_s: FloatArray,
-    column: FloatArray,
-) -> tuple[FloatArray, FloatArray]:
+    steps: tuple[FloatArray, IntArray], channel: IntArray, seen: FloatArray,
+    driving: Sequence[tuple[FloatArray, FloatArray, FloatArray]], white: FloatArray, coloured: FloatArray,
+    memory_s: FloatArray, column: FloatArray,
+) -> tuple[FloatArray, FloatArray]:  # fmt: skip
     """Return a column's innovations (n, k) with each of k noises over their standard deviations, and these.
 
     The arguments are those of ``driven_filter`` for each noise; ``white`` is by output, shape (k, o). Noises
     that pass abreast take a third of the time that they take one after another.
     """
     k, (lengths, kind) = len(driving), steps
-    if k == 1:
-        gains = driven_filter(
-            steps, channel, seen, driving[0], white[0, channel], coloured[0], float(memory_s[0])
-        )
-        return gains.innovations(column[:, None]), gains.std[:, None]
-    lanes = np.resize(np.arange(k), -(-k // _ABREAST) * _ABREAST)
-    matrix, begun, drive = (
-        np.stack([each[part] for each in driving], axis=-1)[..., lanes] for part in range(3)
-    )
-    keep, apart = np.exp(-lengths[:, None] / memory_s[lanes]), (white.T[:, lanes], coloured.T[:, lanes] ** 2)
-    out, std = _filtered(lengths, keep, kind, channel, matrix, begun, drive, seen, *apart, column)
+    lanes = np.resize(np.arange(k), 1 if k == 1 else -(-k // _ABREAST) * _ABREAST)
+    driven = (np.stack([each[part] for each in driving], axis=-1)[..., lanes] for part in range(3))
+    numbers = *driven, white.T[channel][:, lanes], coloured.T[:, lanes] ** 2
+    matrix, begun, drive, by_row, own = map(np.ascontiguousarray, numbers)
+    keep, alone = np.exp(-lengths[:, None] / memory_s[lanes]), _ALONE if k == 1 else ()
+    at = alone, lengths, keep, kind, channel, seen, matrix
+    *_, std, out = _filtered(*at, begun, drive, by_row, own, column)
     return out[:, :k], std[:, :k]
-
-
-@kernel(error_model="numpy", fastmath={"contract"})
-def _gains(
-    lengths: FloatArray,
-    keep: FloatArray,
-    kind: IntArray,
-    channel: IntArray,
-    matrix: FloatArray,
-    begun: FloatArray,
-    drive: FloatArray,
-    seen: FloatArray,
-    white: FloatArray,
-    coloured: FloatArray,
-) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Return the transitions (u, s, s), the gains (n, s + o) and the innovations' standard deviations (n,).
-
-    The arguments are those of ``driven_filter``.
-    """
-    s, o, rows = len(drive), len(seen), len(channel)
-    n = s + o
-    P, moved, gains, std = np.zeros((n, n)), np.empty((s, n)), np.empty((rows, n)), np.empty(rows)
-    steps, fresh = np.empty((len(lengths), s, s)), np.empty((len(lengths), s, s))
-    for u in range(len(lengths)):
-        steps[u], fresh[u] = _over(lengths[u], matrix, drive)
-    for a in range(s):
-        P[a, a] = begun[a]
-    for c in range(o):
-        P[s + c, s + c] = coloured[c] ** 2
-    for i in range(rows):
-        u, c, gain = kind[i], channel[i], gains[i]
-        if lengths[u] > 0.0:
-            _propagate(P, moved, steps[u], fresh[u], keep[u], coloured)
-        variance = white[i] + _seen(P, gain, seen[c], s + c)
-        std[i], inverse = np.sqrt(variance), 1.0 / variance
-        for a in range(n):
-            share = gain[a] * inverse
-            for b in range(n):
-                P[a, b] -= share * gain[b]
-        for a in range(n):
-            gain[a] *= inverse
-    return steps, gains, std
 
 
 @kernel(error_model="numpy", fastmath={"contract"})
@@ -286,27 +192,15 @@ def _passed_alone(gains: Gains, column: FloatArray, order: IntArray) -> FloatArr
 
 
 @kernel(error_model="numpy", fastmath={"contract"})
-def _turned(to: FloatArray, step: FloatArray, of: FloatArray) -> None:
-    """Write the product (a, b, k) of transitions (a, c, k) and the first rows of ``of`` (c or more, b, k)."""
-    for a in range(to.shape[0]):
-        for b in range(to.shape[1]):
-            for j in range(to.shape[2]):
-                to[a, b, j] = 0.0
-        for c in range(step.shape[1]):
-            for b in range(to.shape[1]):
-                for j in range(to.shape[2]):
-                    to[a, b, j] += step[a, c, j] * of[c, b, j]
-
-
-@kernel(error_model="numpy", fastmath={"contract"})
 def _advanced(
-    P: FloatArray, moved: FloatArray, step: FloatArray, fresh: FloatArray, keep: FloatArray, own: FloatArray
-) -> None:
+    alone: tuple[int, ...], P: FloatArray, moved: FloatArray, step: FloatArray, fresh: FloatArray,
+    keep: FloatArray, own: FloatArray,
+) -> None:  # fmt: skip
     """Advance ``P`` of ``_filtered`` by a step; ``moved``, shape (s, n + 1, k), is work space."""
-    (s, last, k), n = moved.shape, len(P)
-    _turned(moved, step, P)
+    k, s, n = 1 if len(alone) else len(keep), len(step), len(P)
+    _turned(alone, moved, step, P)
     for a in range(s):
-        for b in range(last):
+        for b in range(n + 1):
             for j in range(k):
                 P[a, b, j] = fresh[a, b, j] if b < s else moved[a, b, j]
         for b in range(s):
@@ -323,9 +217,25 @@ def _advanced(
 
 
 @kernel(error_model="numpy", fastmath={"contract"})
-def _showing(P: FloatArray, seen: FloatArray, own: int, measured: float, gain: FloatArray) -> None:
-    """Write the covariance of an output with all in ``P`` of ``_filtered``, then minus its innovation."""
-    n, k = len(P), P.shape[2]
+def _turned(alone: tuple[int, ...], to: FloatArray, step: FloatArray, of: FloatArray) -> None:
+    """Write the product (s, n + 1, k) of transitions (s, s, k) and the first rows of ``of``."""
+    k = 1 if len(alone) else to.shape[2]
+    for a in range(len(to)):
+        for b in range(to.shape[1]):
+            for j in range(k):
+                to[a, b, j] = 0.0
+        for c in range(len(to)):
+            for b in range(to.shape[1]):
+                for j in range(k):
+                    to[a, b, j] += step[a, c, j] * of[c, b, j]
+
+
+@kernel(error_model="numpy", fastmath={"contract"})
+def _showing(
+    alone: tuple[int, ...], P: FloatArray, seen: FloatArray, own: int, measured: float, gain: FloatArray
+) -> None:
+    """Write the covariance of an output with all in ``P`` of ``_filtered``, then minus the innovation."""
+    k, n = 1 if len(alone) else P.shape[2], len(P)
     for a in range(n):
         for j in range(k):
             gain[a, j] = P[a, own, j]
@@ -339,29 +249,23 @@ def _showing(P: FloatArray, seen: FloatArray, own: int, measured: float, gain: F
 
 @kernel(error_model="numpy", fastmath={"contract"})
 def _filtered(
-    lengths: FloatArray,
-    keep: FloatArray,
-    kind: IntArray,
-    channel: IntArray,
-    matrix: FloatArray,
-    begun: FloatArray,
-    drive: FloatArray,
-    seen: FloatArray,
-    white: FloatArray,
-    own: FloatArray,
-    column: FloatArray,
-) -> tuple[FloatArray, FloatArray]:
-    """Return the innovations (n, k) of a column (n,) over their standard deviations, and these.
+    alone: tuple[int, ...], lengths: FloatArray, keep: FloatArray, kind: IntArray, channel: IntArray,
+    seen: FloatArray, matrix: FloatArray, begun: FloatArray, drive: FloatArray, white: FloatArray,
+    own: FloatArray, column: FloatArray,
+) -> tuple[FloatArray, FloatArray, FloatArray, FloatArray]:  # fmt: skip
+    """Return transitions (u, s, s, k), gains (n, s + o), standard deviations (n, k), and innovations (n, k).
 
-    The last index of an argument that depends on the noise is that of the noise; ``own`` holds the variances
-    of the coloured noise. ``P`` is the covariance, without the part that follows from symmetry, and its last
-    column is that of the states themselves.
+    The gains are those with the first noise. The innovations are those of a column (n,), over their standard
+    deviations.
+    The last index of an argument that depends on the noise is that of the noise. ``alone`` is not empty where
+    the noise is one, which the compiler then knows. ``own`` holds the variances of the coloured noise. ``P``
+    is the covariance, without the part that follows from symmetry; its last column holds the states.
     """
-    (s, k), rows = drive.shape, len(channel)
+    k, s, rows = 1 if len(alone) else drive.shape[1], len(drive), len(channel)
     n = s + len(seen)
     P, moved, gain = np.zeros((n, n + 1, k)), np.empty((s, n + 1, k)), np.empty((n + 1, k))
     steps, fresh = np.empty((len(lengths), s, s, k)), np.empty((len(lengths), s, s, k))
-    out, std, share = np.empty((rows, k)), np.empty((rows, k)), np.empty(k)
+    gains, std, out, share = np.empty((rows, n)), np.empty((rows, k)), np.empty((rows, k)), np.empty(k)
     for j in range(k):
         for u in range(len(lengths)):
             over = _over(lengths[u], np.ascontiguousarray(matrix[:, :, j]), drive[:, j])
@@ -371,10 +275,10 @@ def _filtered(
     for i in range(rows):
         u, c = kind[i], channel[i]
         if lengths[u] > 0.0:
-            _advanced(P, moved, steps[u], fresh[u], keep[u], own)
-        _showing(P, seen[c], s + c, column[i], gain)
+            _advanced(alone, P, moved, steps[u], fresh[u], keep[u], own)
+        _showing(alone, P, seen[c], s + c, column[i], gain)
         for j in range(k):
-            variance = white[c, j] + gain[s + c, j]
+            variance = white[i, j] + gain[s + c, j]
             for b in range(s):
                 variance += seen[c, b] * gain[b, j]
             std[i, j] = np.sqrt(variance)
@@ -382,7 +286,8 @@ def _filtered(
         for a in range(n):
             for j in range(k):
                 share[j] = gain[a, j] / std[i, j] ** 2
+            gains[i, a] = share[0]
             for b in range(0 if a < s else s, n + 1):
                 for j in range(k):
                     P[a, b, j] -= share[j] * gain[b, j]
-    return out, std
+    return steps, gains, std, out
