@@ -17,12 +17,13 @@ from advisor.gap.axis.setting import moved_to
 from advisor.gap.axis.starts import Starts
 from advisor.gap.verdict.missing_law import law_in
 from advisor.model.axes.lateral import LATERAL
-from advisor.oem.axis.disturbance import STEP_S, answered, courses_of
+from advisor.oem.axis.disturbance import answered, courses_of
 from advisor.oem.driven_motion.noise import Noise
 from tests.gap.axis.test_comparison import AIRCRAFT, maneuvers
 from tests.oem.axis.builders import JET
 
 ANGLE = 0.01
+STEP_S = 0.02  # the response to a disturbance is given at these steps
 NOISE = np.array([0.003, 0.001, 0.002, 0.03, 1.0])
 
 
