@@ -55,7 +55,7 @@ def wandering(n, memory, rng):
 def flown_law(case, fit, m, block, of):
     """Return the outputs' change by a law x·|x| of a rate in an equation, from the fitted motion."""
     rows, stamps = fit.assembly.rows[m][of], fit.assembly.t[fit.assembly.blocks[m]]
-    t = np.arange(np.min(stamps), np.max(stamps), 0.02)  # as finely as the model answers
+    t = np.arange(np.min(stamps), np.max(stamps), STEP_S)
     x = np.interp(t, fit.assembly.t[rows], fit.fitted[rows])
     return answered(fit.linear(case.flown), m, block, t, (x * np.abs(x))[:, None])[:, 0]
 
@@ -99,8 +99,7 @@ def test_a_coloured_instrument_is_no_gust(case, flight):
     fit, *_ = flight
     rng = np.random.default_rng(4)
     left = np.zeros(len(fit.fitted))
-    for named in fit.assembly.rows:
-        rows = named["r"]
+    for rows in (named["r"] for named in fit.assembly.rows):
         left[rows] = 0.004 * wandering(rows.stop - rows.start, 0.95, rng)
     coloured = with_residual(fit, left)
     found = gusts_of(coloured, case.flown)
