@@ -101,7 +101,7 @@ def test_thrust_behind_the_throttle_moves_the_nose_later(case):
 
 
 def test_an_effect_that_relieves_a_nuisance_parameter_at_its_prior_is_promising(case):
-    """A lateness of 0.2 s is far from the prior of a natural one, and the effect frees the fit from it."""
+    """A vane 0.2 s early is far from what gyro filters of 20 Hz make it, and the effect frees the fit."""
     late = [replace(r, outputs={**r.outputs}) for r in case.flown.problem.records]
     for record in late:
         angle = record.outputs["alpha"]
@@ -109,8 +109,7 @@ def test_an_effect_that_relieves_a_nuisance_parameter_at_its_prior_is_promising(
     flown = replace(case.flown, problem=replace(case.flown.problem, records=tuple(late)))
     case = replace(case, flown=flown)
     plain = case.fit(case.begin, case.natural)
-    strained = plain.point.setting["alpha", "delay_s"][0]
-    assert strained < -0.1
+    assert plain.point.setting["alpha", "delay_s"][0] == pytest.approx(-0.02)
     starts = Starts(case, plain, list(axis_effects(flown)))
     gained = {s.name: s.price - (starts._cost + float(starts._begin @ starts._begin)) for s in starts.of_each}
     assert gained["late_alpha_stamps"] < -5.0

@@ -173,10 +173,9 @@ def _by_moments(flown: Flown) -> Iterator[AxisEffect]:
     """Yield the moments of known signals that not every aircraft has, such as the thrust's."""
     axis = flown.axis
     for place, moment in axis.moments.items():
-        if np.isfinite(moment.std) or not any(moves_in(r, moment.signals) for r in flown.problem.records):
-            continue
-        moves = max(float(np.ptp(r.signals[n].y)) for r in flown.problem.records for n in moment.signals)
-        if moves > THROTTLE_MOVES:
+        showing = [r.signals for r in flown.problem.records if moves_in(r, moment.signals)]
+        moves = max((float(np.ptp(signals[n].y)) for signals in showing for n in moment.signals), default=0.0)
+        if not np.isfinite(moment.std) and moves > THROTTLE_MOVES:
             # Half of the moment of the largest flown deflection.
             (control,) = axis.inputs
             of = next(t.name for t in axis.shared if (t.factor, t.state) == (control, moment.state))

@@ -105,7 +105,8 @@ def case_of(
         if x.entry != "lag_s" or x.place in setting
     ]
     natural = list(_of_one_control(axis, natural)) if len(axis.inputs) == 1 else natural
-    natural += _filters(problem)
+    own = {x.place: x for x in _filters(problem)}
+    natural = [x for x in natural if x.place not in own] + [*own.values()]
     free = lay_out(problem).free
     determined = tuple(name for k, name in enumerate(names) if name in aircraft.model and k in free)
     given = np.array([aircraft.model.get(n, v) for n, v in zip(names, theta, strict=True)])
@@ -135,8 +136,12 @@ def _filters(problem: AxisProblem) -> Iterator[Parameter]:
     axis = problem.axis
     measured = set.intersection(*(set(record.outputs) for record in problem.records))
     for of, std in axis.filters.items():
-        if of in measured:
+        if of in measured and problem.is_computed:
             yield Parameter((of, "delay_s"), Prior(0.0, std), bounds=(-REACH * std, REACH * std), step=1e-3)
+        elif axis.hidden in measured and not problem.is_computed:
+            # A vane passes no filter of gyro and accelerometer, so that its angle is early beside theirs.
+            place = (axis.hidden, "delay_s")
+            yield Parameter(place, Prior(0.0, std), bounds=(-REACH * std, 0.0), step=1e-3)
     if problem.is_computed:
         for place, (std, bounds) in axis.computed.items():
             yield Parameter(place, Prior(0.0, std), bounds=bounds, step=0.01)
