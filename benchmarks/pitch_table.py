@@ -24,12 +24,10 @@ from advisor.aircraft.aircraft import Aircraft
 from advisor.analysis.gap_flights import maneuvers_of
 from advisor.cli.options import read_aircraft
 from advisor.flight.maneuvers.maneuver import Maneuver
+from advisor.gap.as_flown import as_flown
 from advisor.gap.axis.comparison import compare_axis
-from advisor.gap.diagnose import examine, with_speed
+from advisor.gap.diagnose import examine
 from advisor.gap.effects import EFFECTS
-from advisor.gap.records.prepare import as_stamped
-from advisor.gap.records.unmeasured_alpha import alpha_by_motion
-from advisor.gap.records.usable import usable_of
 from advisor.gap.result import Diagnosis, spelled
 from advisor.model.axes.pitch import PITCH
 from advisor.oem.estimate import NoEstimate
@@ -47,9 +45,8 @@ _NAMES = {spelled(name).replace(" ", "_"): name for name in EFFECTS}
 
 def by_table(maneuvers: Sequence[Maneuver], aircraft: Aircraft) -> Diagnosis | NoEstimate:
     """Return the diagnosis of pitch by the engine that roll and yaw have."""
-    flown = [as_stamped(m) for m in maneuvers]
-    aircraft = with_speed(usable_of(flown), aircraft)
-    return compare_axis(PITCH, usable_of(alpha_by_motion(flown, aircraft)), aircraft)
+    flown = as_flown(maneuvers, aircraft)
+    return compare_axis(PITCH, flown.usable, flown.aircraft, kinematics=flown.kinematics)
 
 
 def by_today(maneuvers: Sequence[Maneuver], aircraft: Aircraft) -> Diagnosis | NoEstimate:

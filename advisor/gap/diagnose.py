@@ -5,9 +5,8 @@ from dataclasses import dataclass, replace
 from functools import partial
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.flight.instruments.kinematics import check_alpha, combine
 from advisor.flight.maneuvers.maneuver import Maneuver
-from advisor.gap.candidates.alpha_offset import least_offset_rad
+from advisor.gap.as_flown import as_flown
 from advisor.gap.candidates.known import AIR, left_aside
 from advisor.gap.fitting.problem import EffectProblem
 from advisor.gap.inference.diagnose import Mirror, infer
@@ -15,12 +14,7 @@ from advisor.gap.inference.engine import Progress
 from advisor.gap.inference.findings import Circumstances, Findings
 from advisor.gap.inference.prior import FIELD, FieldPrior
 from advisor.gap.inference.prior_speed import prior_speed
-from advisor.gap.records.airspeed import measures_speed
-from advisor.gap.records.flights import PreparedManeuvers
-from advisor.gap.records.prepare import as_stamped, prepare
-from advisor.gap.records.unmeasured_alpha import alpha_by_motion, is_known
-from advisor.gap.records.unmeasured_speed import speed_of_the_motion
-from advisor.gap.records.usable import usable_of
+from advisor.gap.records.prepare import prepare
 from advisor.gap.result import Cause, Diagnosis, spelled
 from advisor.gap.search.baseline import at_another_speed, fit_baseline, of_this_flight
 from advisor.gap.uncatalogued.airspeed_scale import airspeed_scale_of, true_over_read
@@ -31,7 +25,6 @@ from advisor.gap.verdict.one_maneuver import answer_of_one
 from advisor.gap.verdict.text import answers_of
 from advisor.words.certainty import as_sure
 from advisor.words.digits import decimals_for, with_half
-from advisor.words.problems import UnusableInputError
 from advisor.words.quantiles import NORMAL_95
 
 
@@ -88,30 +81,19 @@ def examine(
         No usable manoeuvre, or no angle of attack.
     """
     progress("checking the angle of attack against the motion", 0.0)
-    maneuvers = [as_stamped(m) for m in maneuvers]
-    aircraft = with_speed(usable_of(maneuvers), aircraft)
-    offset = aircraft.effects.get("alpha_bias", {}).get("bias_rad", 0.0)
-    maneuvers = alpha_by_motion([_without_offset(m, offset) for m in maneuvers], aircraft)
-    flights = prepare(maneuvers, aircraft)
-    _refuse(flights, maneuvers)
-    arms = aircraft.accelerometer.arm_m, aircraft.alpha.vane_arm_m
-    numbers = {flight.number for flight in flights.flights}
-    measured = maneuvers if "alpha" in flights.channels else ()
-    flown = [_without_dead_pitot(m) for m in measured if m.number in numbers]
-    kinematics = combine([check_alpha(m, aircraft.stated_airspeed_m_s, *arms) for m in flown])
+    flown = as_flown(maneuvers, aircraft)
+    maneuvers, kinematics = flown.maneuvers, flown.kinematics
     progress("fitting the simulator's model", 0.01)
-    if kinematics.offset.stays and abs(kinematics.offset.rad) > least_offset_rad(kinematics.offset.std_rad):
-        # The offset that the climb rate shows is removed first: the trim would carry it into the lift.
-        maneuvers = [_without_offset(m, kinematics.offset.rad) for m in maneuvers]
-        flights = prepare(maneuvers, aircraft)
-    given, aircraft = aircraft.effects, of_this_flight(flights, aircraft)
+    flights = prepare(maneuvers, flown.aircraft)
+    numbers = {flight.number for flight in flights.flights}
+    given, aircraft = flown.aircraft.effects, of_this_flight(flights, flown.aircraft)
     problem, baseline = fit_baseline(flights, aircraft)
     speed = None if aircraft.reference_airspeed_m_s else prior_speed(problem, baseline)
     if speed is not None:
         aircraft = replace(aircraft, reference_airspeed_m_s=speed)
         flights = prepare(maneuvers, aircraft)
         problem, baseline = at_another_speed(problem, baseline, flights)
-    weight = weight_reading(flown)
+    weight = weight_reading(flown.measured)
     over_read = true_over_read(airspeed_scale_of(problem, baseline), weight)
     if over_read > 1.0:
         # An indicated air speed changes by less than the integral of the accelerations.
@@ -131,44 +113,6 @@ def examine(
     answer = partial(answer_of, inference, aircraft, kinematics, holdout, circumstances)
     whole = noted(*answer())
     return replace(whole, fewer=lambda most: noted(*answer(most)), seen_in=lambda x: noted(*answer(seen=x)))
-
-
-def _refuse(flights: PreparedManeuvers, maneuvers: Sequence[Maneuver]) -> None:
-    if not len(flights):
-        raise UnusableInputError(
-            "no_maneuver",
-            "No usable manoeuvre in the log: there is nothing to compare a simulator with.",
-            "Fly at least three elevator manoeuvres (3-2-1-1 or doublets), better nine.",
-        )
-    if not is_known(maneuvers):
-        raise UnusableInputError(
-            "no_alpha",
-            "The log has no angle of attack, and the motion cannot replace one without a_z, theta and air "
-            "speed.",
-            "Log AOA_SSA or RAW_IMU, or set alpha.source in the aircraft file.",
-        )
-
-
-def _without_dead_pitot(maneuver: Maneuver) -> Maneuver:
-    """Return the manoeuvre without its air speed channel, if that channel is constant in flight."""
-    if measures_speed(maneuver):
-        return maneuver
-    return replace(maneuver, channels={k: c for k, c in maneuver.channels.items() if k != "airspeed"})
-
-
-def with_speed(maneuvers: Sequence[Maneuver], aircraft: Aircraft) -> Aircraft:
-    """Return the aircraft with the air speed that the motion implies, if file and log state none."""
-    if aircraft.stated_airspeed_m_s or all(measures_speed(m) for m in maneuvers):
-        return aircraft
-    return replace(aircraft, airspeed_m_s=speed_of_the_motion(maneuvers))
-
-
-def _without_offset(maneuver: Maneuver, offset: float) -> Maneuver:
-    """Return the manoeuvre with ``offset``, in rad, subtracted from its angle of attack."""
-    channels = dict(maneuver.channels)
-    if "alpha" in channels:
-        channels["alpha"] = replace(channels["alpha"], y=channels["alpha"].y - offset)
-    return replace(maneuver, channels=channels)
 
 
 _NOT_GIVEN = (

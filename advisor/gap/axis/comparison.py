@@ -9,6 +9,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from advisor.aircraft.aircraft import Aircraft
+from advisor.flight.instruments.kinematics import KinematicCheck
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.gap.axis.diagnosis import diagnose_axis
 from advisor.gap.axis.models import case_of
@@ -29,18 +30,20 @@ def compare_axis(
     prior: FieldPrior = FIELD,
     logged: AxisEstimate | None = None,
     as_logged: bool = False,
+    kinematics: KinematicCheck | None = None,
 ) -> Diagnosis | NoEstimate:
     """Compare an axis of the aircraft file with accepted manoeuvres.
 
     A derivative that the file does not state is taken from the flight. ``prior`` holds the probability of
     each kind of answer before the flight. ``logged`` is the estimate from the logged manoeuvres.
-    ``as_logged`` says that ``maneuvers`` are the logged ones.
+    ``as_logged`` says that ``maneuvers`` are the logged ones. ``kinematics`` is the check of a measured angle
+    of attack against the motion.
     """
     model = logged if logged is not None and as_logged else estimate_axis(axis, maneuvers, aircraft)
     if isinstance(model, NoEstimate):
         return model
     case = case_of(axis, maneuvers, aircraft, model.theta)
-    made = None if isinstance(case, NoEstimate) else diagnose_axis(case, prior)
+    made = None if isinstance(case, NoEstimate) else diagnose_axis(case, prior, kinematics)
     diagnosis = made or Diagnosis(
         axis=axis.key, verdict="untested", sentence="", gap=Gap(), model={},
         maneuvers=tuple(m.number for m in maneuvers),

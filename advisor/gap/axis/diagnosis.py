@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from advisor.flight.instruments.kinematics import KinematicCheck
 from advisor.gap.alternative import Alternative, AlternativeEvidence, Weighed
 from advisor.gap.axis.effects import axis_effects, block_of, unseen
 from advisor.gap.axis.evidence import colour_share, information_of, posterior_at, squares_of
@@ -19,6 +20,7 @@ from advisor.gap.axis.models import Case, base_of, free_near
 from advisor.gap.fitting.prior import ERROR_IF_RIGHT, ERROR_IF_WRONG
 from advisor.gap.inference.engine import Decided, decided, first_stage
 from advisor.gap.inference.explanation import Row
+from advisor.gap.inference.offset import OFFSET, cause_of_offset, with_offset
 from advisor.gap.inference.posterior import NONE, PARAMETERS, relabelled
 from advisor.gap.inference.prior import FIELD, FieldPrior
 from advisor.gap.result import Cause, Diagnosis, GapVerdict, Trace, Value, Where, ranked
@@ -32,14 +34,19 @@ from advisor.model.axis import Axis
 from advisor.process.arrays import FloatArray
 
 
-def diagnose_axis(case: Case, prior: FieldPrior = FIELD) -> Diagnosis | None:
+def diagnose_axis(
+    case: Case, prior: FieldPrior = FIELD, kinematics: KinematicCheck | None = None
+) -> Diagnosis | None:
     """Return the probabilities of all explanations; None if no plain fit exists.
 
     If one effect is the likeliest explanation, a second effect is sought in addition to the first.
 
     Parameters
     ----------
-    prior : shares of the answers before the flight.
+    prior
+        Shares of the answers before the flight.
+    kinematics
+        Check of a measured angle of attack against the motion; None without such an angle.
     """
     first = _first(case)
     plain = first and case.fit(first.point, first.free, share=colour_share(first))
@@ -50,9 +57,15 @@ def diagnose_axis(case: Case, prior: FieldPrior = FIELD) -> Diagnosis | None:
         return None
     table = [*axis_effects(case.flown), *curves_of(case, plain, has_name=True)]
     flight = AxisFlight(case, plain, table, list(axis_laws(case, plain)))
-    decision = decided(
-        flight, first_stage(flight), prior, lambda rows: [_named_air(case.axis, row) for row in rows]
-    )
+
+    def beyond(rows: list[Row[AxisModel]]) -> list[Row[AxisModel]]:
+        named = [_named_air(case.axis, row) for row in rows]
+        if kinematics is None:
+            return named
+        computed = case.flown.problem.is_computed
+        return with_offset(named, kinematics.offset, computed, prior, flight.tried[0])
+
+    decision = decided(flight, first_stage(flight), prior, beyond)
     decision = _capped(case, decision, as_given)
     weights, whole = weighed(decision.posteriors[0]), decision.chosen[-1]
     last, left = whole.fit, _held_out(case, whole, decision.heat)
@@ -66,7 +79,7 @@ def diagnose_axis(case: Case, prior: FieldPrior = FIELD) -> Diagnosis | None:
     remains = dict(waterfall)
     causes = tuple(
         replace(cause, gap_after=remains.get(cause.name, np.nan))
-        for cause in islice(_causes(case, decision, final, as_given), MOST_CAUSES)
+        for cause in islice(_causes(case, decision, final, as_given, kinematics), MOST_CAUSES)
     )
     verdict = verdict_of(weights)
     where = where_of(case.axis, weights.evidence, causes if verdict == "effect" else ())
@@ -74,6 +87,7 @@ def diagnose_axis(case: Case, prior: FieldPrior = FIELD) -> Diagnosis | None:
     return Diagnosis(
         **(vars(weights) | {"failed": decision.failed}), axis=case.axis.key, verdict=verdict,
         sentence=_sentence(verdict, where, causes), gap=gap, where=where, causes=causes,
+        kinematics=kinematics,
         shrink=shrink if weights.answer == PARAMETERS or len(decision.chosen) > 1 else None,
         waterfall=waterfall, cannot_see=tuple(unseen(case.flown)),
         peaks={"simulator": peaks_of(as_given), "fitted_derivatives": peaks_of(plain)},
@@ -193,7 +207,9 @@ class _Told(NamedTuple):
         return cls(fit, *posterior_at(fit, case.prior_of(model.tolerance, fit.free), share))
 
 
-def _causes(case: Case, decided: Decided[AxisModel], final: _Told, as_given: Fit) -> Iterator[Cause]:
+def _causes(
+    case: Case, decided: Decided[AxisModel], final: _Told, as_given: Fit, kinematics: KinematicCheck | None
+) -> Iterator[Cause]:
     """Yield the effects of the model, then the alternatives to the first effect."""
     posterior, together, added = decided.posteriors[0], 1.0, decided.chosen[1:]
     for stage, model in zip(decided.posteriors, added, strict=False):
@@ -204,6 +220,9 @@ def _causes(case: Case, decided: Decided[AxisModel], final: _Told, as_given: Fit
     others = {a: p for a, p in posterior.by_alternative.items() if a.is_effect and a not in taken}
     for alternative, probability in others.items():
         other = posterior.explanation_of(alternative)
+        if alternative == OFFSET and kinematics is not None:
+            yield cause_of_offset(kinematics, probability, np.nan, posterior.answer == OFFSET)
+            continue
         if alternative == air_of(case.axis):
             yield _air(case, other, probability, posterior.answer == air_of(case.axis), as_given)
             continue

@@ -9,7 +9,7 @@ from advisor.aircraft.aircraft import Aircraft, Estimation
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.gap.axis.effects import AxisEffect
 from advisor.gap.axis.fit import Fit, Known, Point, fitted
-from advisor.gap.axis.setting import Flown
+from advisor.gap.axis.setting import Flown, Setting
 from advisor.gap.candidates.nuisances import REACH
 from advisor.gap.fitting.prior import ERROR_IF_WRONG
 from advisor.gap.records.floor import SMOOTH, TOLERANCE
@@ -92,7 +92,21 @@ def case_of(
     )
     stated = {place: value for place, value in problem.values.items() if value}
     setting = {place: np.full(len(maneuvers), value) for place, value in {COMMAND: 0.0, **stated}.items()}
-    natural = []
+    natural = _natural(problem, aircraft, setting)
+    free = lay_out(problem).free
+    determined = tuple(name for k, name in enumerate(names) if name in aircraft.model and k in free)
+    given = np.array([aircraft.model.get(n, v) for n, v in zip(names, theta, strict=True)])
+    begin = Point(theta, starting_point(problem)[1], setting)
+    arm_is_stated = any(stated_arm_m(name, aircraft) is not None for name in axis.arms)
+    problem = replace(problem, floor=floor_of(problem))
+    about = dict(zip(names, theta.tolist(), strict=True))
+    flown = Flown(problem, throttle, arm_is_stated, about)
+    return Case(flown, given, determined, tuple(natural), begin, tuple(m.number for m in maneuvers), fixed)
+
+
+def _natural(problem: AxisProblem, aircraft: Aircraft, setting: Setting) -> list[Parameter]:
+    """Return the nuisance parameters of every model of a flight."""
+    axis, natural = problem.axis, []
     for name in filter(problem.flies, axis.inputs):
         # Held or linear between two stamps: a rate limit begins with the first, a lag with their mean.
         stamps = np.concatenate([np.diff(r.inputs[name].t) for r in problem.records if name in r.inputs])
@@ -106,16 +120,7 @@ def case_of(
     ]
     natural = list(_of_one_control(axis, natural)) if len(axis.inputs) == 1 else natural
     own = {x.place: x for x in _filters(problem)}
-    natural = [x for x in natural if x.place not in own] + [*own.values()]
-    free = lay_out(problem).free
-    determined = tuple(name for k, name in enumerate(names) if name in aircraft.model and k in free)
-    given = np.array([aircraft.model.get(n, v) for n, v in zip(names, theta, strict=True)])
-    begin = Point(theta, starting_point(problem)[1], setting)
-    arm_is_stated = any(stated_arm_m(name, aircraft) is not None for name in axis.arms)
-    problem = replace(problem, floor=floor_of(problem))
-    about = dict(zip(names, theta.tolist(), strict=True))
-    flown = Flown(problem, throttle, arm_is_stated, about)
-    return Case(flown, given, determined, tuple(natural), begin, tuple(m.number for m in maneuvers), fixed)
+    return [x for x in natural if x.place not in own] + [*own.values()]
 
 
 def _of_one_control(axis: Axis, natural: Sequence[Parameter]) -> Iterator[Parameter]:

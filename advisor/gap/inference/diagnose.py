@@ -17,6 +17,7 @@ from advisor.gap.inference.engine import Decided, Progress, decided, first_stage
 from advisor.gap.inference.evidence import FlightProblem
 from advisor.gap.inference.explanation import Row
 from advisor.gap.inference.laws import laws_of
+from advisor.gap.inference.offset import with_offset
 from advisor.gap.inference.pitch import PitchFlight, PitchModel
 from advisor.gap.inference.posterior import NONE, relabelled, stated_as
 from advisor.gap.inference.prior import FieldPrior
@@ -27,13 +28,6 @@ from advisor.gap.noise.stamps import stamp_power
 from advisor.gap.records.floor import tolerance_of
 from advisor.gap.search.air import SoughtAir, moving_air
 from advisor.process.arrays import FloatArray
-
-_SET_WITHIN_RAD = {True: 0.009, False: 0.0035}
-"""Prior: standard deviation of α's offset without a fault, rad, for an autopilot's estimate and for a vane.
-ArduPlane's estimate is off by 0.2 to 0.5 degrees; a vane's zero is set to 0.2 degrees."""
-_OFF_BY_RAD = 0.03
-"""Prior: standard deviation of a faulty α offset, rad."""
-
 
 Mirror = Callable[[PitchFlight, PitchModel, float], PitchModel | None]
 
@@ -76,8 +70,10 @@ def infer(
     sigma = aircraft.effects.get("turbulence", {}).get("sigma_w_m_s", 0.0) / problem.flights.reference_m_s
 
     def beyond(rows: list[Row[PitchModel]]) -> list[Row[PitchModel]]:
-        with_offset = _with_offset(rows, kinematics, problem, prior, flight.tried[0])
-        return _named_air(with_offset, stage.plain, sought, sigma, floor)
+        if "alpha" in problem.channels:
+            computed = problem.flights.alpha_is_derived
+            rows = with_offset(rows, kinematics.offset, computed, prior, flight.tried[0])
+        return _named_air(rows, stage.plain, sought, sigma, floor)
 
     progress("searching for a second cause", 0.52)
     final = decided(flight, stage, prior, beyond)
@@ -95,32 +91,6 @@ def _table(
         [with_sizes(v, flight.mean, problem.flights) for v in described if v.starts],
         [with_sizes(v, flight.mean, problem.flights) for v in laws_of(problem.flights) if v.starts],
     )
-
-
-def _with_offset(
-    rows: Sequence[Row[PitchModel]],
-    kinematics: KinematicCheck,
-    problem: EffectProblem,
-    prior: FieldPrior,
-    names: int,
-) -> list[Row[PitchModel]]:
-    """Return the rows with a constant offset of α as one more explanation."""
-    # Trims absorb an offset of α, so only the answer "nothing" excludes it.
-    offset = kinematics.offset
-    if "alpha" not in problem.channels or not offset.stays or not np.isfinite(offset.rad):
-        return list(rows)
-    natural = np.hypot(_SET_WITHIN_RAD[problem.flights.alpha_is_derived], offset.std_rad)
-    faulty = np.hypot(_OFF_BY_RAD, offset.std_rad)
-    gain = 0.5 * offset.rad**2 * (natural**-2 - faulty**-2) - float(np.log(faulty / natural))
-    gain += float(np.log(prior.effect / max(names, 1) / prior.none))
-    none = [row for row in rows if row.alternative == NONE]
-    others = (_gaining(row, "offset", max(0.0, gain)) for row in rows if row.alternative != NONE)
-    faults = (relabelled(_gaining(row, "offset", gain), stated_as("alpha_bias")) for row in none)
-    return [*none, *others, *faults]
-
-
-def _gaining(row: Row[PitchModel], term: str, nats: float) -> Row[PitchModel]:
-    return replace(row, terms={**row.terms, term: nats})
 
 
 def _named_air(
@@ -145,7 +115,10 @@ def _named_air(
         by_air = whole_gap(left, floor) - whole_gap(np.minimum(beyond, left), floor)
         return row.alternative == NONE or plain_gap - whole_gap(left, floor) < by_air
 
-    return [_gaining(relabelled(row, name), "steady", air.steady) if is_air(row) else row for row in rows]
+    def named(row: Row[PitchModel]) -> Row[PitchModel]:
+        return replace(relabelled(row, name), terms={**row.terms, "steady": air.steady})
+
+    return [named(row) if is_air(row) else row for row in rows]
 
 
 def floor_of(problem: EffectProblem, last: EffectFit, held_out: HeldOut) -> FloatArray:

@@ -14,6 +14,7 @@ from advisor.gap.fitting.problem import EffectProblem
 from advisor.gap.fitting.uncertainty import covariance_of
 from advisor.gap.inference.diagnose import Inference
 from advisor.gap.inference.findings import Findings
+from advisor.gap.inference.offset import OFFSET, cause_of_offset
 from advisor.gap.inference.pitch import PitchModel
 from advisor.gap.inference.posterior import Posterior, stated_as
 from advisor.gap.kit.variant import Variant
@@ -48,8 +49,8 @@ def causes_of(
         present += [replace(first, probability=posterior.of(answer)), *rest]
     if answer.kind == "air" and (air := moving_air_of(e)) is not None:
         present.append(replace(air, probability=posterior.of(answer)))
-    if answer.name == "alpha_bias":
-        present.append(_offset(kinematics, posterior, gap, True))
+    if answer == OFFSET:
+        present.append(cause_of_offset(kinematics, posterior.of(OFFSET), gap.after, True))
     taken = {c.effect for c in present}
     left = 1.0 - sum(c.probability for c in present)
     others: list[Cause] = []
@@ -60,8 +61,8 @@ def causes_of(
         p, left = min(p, left), left - min(p, left)
         if model.name == alternative.name:
             others.append(_cause(inference, e, model, model, posterior, p, False))
-        elif alternative.name == "alpha_bias":
-            others.append(_offset(kinematics, posterior, gap, False))
+        elif alternative == OFFSET:
+            others.append(cause_of_offset(kinematics, posterior.of(OFFSET), gap.after, False))
     return (*present, *others)
 
 
@@ -84,16 +85,6 @@ def _cause(
     block = EFFECTS[pitch_model.name].block
     cause = Cause(pitch_model.name, block, probability, sizes, alike, way, gap_after, present)
     return with_model_errors(cause, inference.problem)
-
-
-def _offset(kinematics: KinematicCheck, posterior: Posterior[PitchModel], gap: Gap, present: bool) -> Cause:
-    offset = kinematics.offset
-    return Cause(
-        "alpha_bias", "alpha_sensor", posterior.of(stated_as("alpha_bias")),
-        {"bias_rad": Value(offset.rad, offset.std_rad)},
-        ("an offset of the attitude's zero", "steady up- or downwash"),
-        "level the attitude reference on the ground; fly in still air", gap.after, present,
-    )  # fmt: skip
 
 
 def _not_told_from(
