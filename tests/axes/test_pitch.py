@@ -117,7 +117,7 @@ def test_an_effect_that_relieves_a_nuisance_parameter_at_its_prior_is_promising(
 
 def test_every_effect_and_law_of_the_table_is_offered(case):
     plain = case.fit(case.begin, case.natural)
-    named = {e.name for e in [*axis_effects(case.flown), *curves_of(case, plain, has_name=True)]}
+    named = {e.name for e in [*axis_effects(case.flown), *curves_of(case, plain, PITCH.curves)]}
     assert named >= {
         "actuator_lag", "transport_delay", "actuator_backlash", "late_pitch_rate_stamps", "pitch_rate_scale",
         "alpha_vane_offset", "accelerometer_offset", "thrust_moment", "mass_change", "cg_shift", "icing",

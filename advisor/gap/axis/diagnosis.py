@@ -55,15 +55,16 @@ def diagnose_axis(
     )
     if plain is None or as_given is None:
         return None
-    table = [*axis_effects(case.flown), *curves_of(case, plain, has_name=True)]
+    with_name = (curve for curve in case.axis.curves if curve.has_name)
+    table = [*axis_effects(case.flown), *curves_of(case, plain, with_name)]
     flight = AxisFlight(case, plain, table, list(axis_laws(case, plain)))
 
     def beyond(rows: list[Row[AxisModel]]) -> list[Row[AxisModel]]:
-        named = [_named_air(case.axis, row) for row in rows]
+        rows = [_named_air(case.axis, row) for row in rows]
         if kinematics is None:
-            return named
+            return rows
         computed = case.flown.problem.is_computed
-        return with_offset(named, kinematics.offset, computed, prior, flight.tried[0])
+        return with_offset(rows, kinematics.offset, computed, prior, flight.tried[0])
 
     decision = decided(flight, first_stage(flight), prior, beyond)
     decision = _capped(case, decision, as_given)

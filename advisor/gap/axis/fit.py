@@ -115,6 +115,12 @@ class Fit:
         )
 
     @property
+    def added(self) -> FloatArray:
+        """Shape (N,): part of the outputs by nonlinear terms, which the simulation lacks."""
+        at = zip(self.free, self.values[len(self.point.theta) :], strict=True)
+        return sum((v * f.column for f, v in at if f.adds), np.zeros(len(self.fitted)))
+
+    @property
     def bounds(self) -> tuple[FloatArray, FloatArray]:
         """Lowest and highest values, (s + k,) each."""
         low, high = np.array([(-np.inf, np.inf)] * len(self.point.theta) + [f.bounds for f in self.free]).T

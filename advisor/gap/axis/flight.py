@@ -10,6 +10,7 @@ from advisor.gap.axis.effects import AxisEffect, block_of
 from advisor.gap.axis.evidence import colour_share, gained, information_of, squares_of, step_of
 from advisor.gap.axis.fit import Fit, Known, moved_by
 from advisor.gap.axis.gusts import Gusts, coloured_likelihood, gusts_of
+from advisor.gap.axis.laws import along
 from advisor.gap.axis.measure import sums
 from advisor.gap.axis.models import Case, base_of, free_near, free_with
 from advisor.gap.axis.residual import residual_of
@@ -40,6 +41,8 @@ LIKELY = 0.01
 """Probability above which an effect is also fitted with gusts, and above which its sizes are stated."""
 SEARCHES = 4
 """Numerical: largest number of searches for the plain model, each from the likeliest effect's derivatives."""
+_AGAIN = 2
+"""Numerical: number of further fits of a nonlinear term, each along the motion of the fit before."""
 _STEPS = 2
 """Numerical: number of Gauss-Newton steps from the optimum in white noise to the optimum in gusts."""
 
@@ -92,7 +95,8 @@ class AxisFlight:
         begin = self.plain
         if base is not None:
             # With an effect, another lateness of commands and outputs changes the outputs by something else.
-            begin = replace(base.fit, free=tuple(replace(s, column=None) for s in base.fit.free))
+            free = (s if s.adds else replace(s, column=None) for s in base.fit.free)
+            begin = replace(base.fit, free=tuple(free))
         # At two temperatures each of two optima may be the likelier: one serves all searches.
         share = colour_share(begin)
         plain = self.case.fit(begin.point, begin.free, share=share) or begin
@@ -154,8 +158,13 @@ class AxisFlight:
         """Return the model with an effect; None if the model diverges or a fault ends the fit."""
 
         def work() -> AxisModel | None:
-            fit = self.case.fit(start.point, free_with(self.case, start.effect, at), tolerance, share)
-            return None if fit is None else self._model(start.effect, fit, plain, share)
+            effect = start.effect
+            fit = self.case.fit(start.point, free_with(self.case, effect, at), tolerance, share)
+            for _ in range(_AGAIN if effect.columns is not None and self.case.axis.curves else 0):
+                if fit is not None:
+                    effect = along(self.case, effect, fit)
+                    fit = self.case.fit(fit.point, free_with(self.case, effect, at), tolerance, share)
+            return None if fit is None else self._model(effect, fit, plain, share)
 
         return self.parts.kept(f"{self.case.axis.name}, effect {start.name}", work)
 
@@ -291,7 +300,7 @@ class AxisFlight:
         counts = sums(fit, np.ones(len(fit.residual)))[kept].sum(axis=0)
         gain = gained(was.held_out[kept], now.held_out[kept], counts, share)
         unseen = min(gain.value - gained(was.in_fit[kept], now.in_fit[kept], counts, share).value, 0.0)
-        is_law = any(effect is law for law in self.laws)
+        is_law = effect in self.laws
         answer = UNKNOWN if is_law else Alternative("effect", effect.name)
         answer = replace(answer, block=block_of(self.case.axis, effect.of))
         return replace(

@@ -4,7 +4,7 @@ A curve is a disturbance of one block. The curve consists of x·|x| and x³, whe
 a reading. The curve is symmetric to the left and to the right.
 """
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -16,7 +16,7 @@ from advisor.gap.inference.sizes import BENT, of_range
 from advisor.gap.kit.variant import Variant
 from advisor.gap.uncatalogued.candidate_laws import RINGING, STOPS, SURFACE_STOP, sticking, stops
 from advisor.gap.verdict.missing_law import Lacking
-from advisor.model.axis import Axis
+from advisor.model.axis import Axis, Curve
 from advisor.model.axis_response import respond_axis
 from advisor.oem.alpha_use import FEWEST_SAMPLES
 from advisor.oem.axis.disturbance import STEP_S, answered, courses_of
@@ -47,7 +47,7 @@ def axis_laws(case: Case, fit: Fit) -> Iterator[AxisEffect]:
             )
     yield from (law for law in changes_of(case.flown) if not axis.changes[law.kind].has_name)
     if axis.curves:
-        yield from curves_of(case, fit)
+        yield from curves_of(case, fit, (curve for curve in axis.curves if not curve.has_name))
         return
     motions = [_motion(fit, m) for m in range(len(case.flown))]
     sizes = case.prior_of(1.0, ()).precision ** -0.5
@@ -58,8 +58,8 @@ def axis_laws(case: Case, fit: Fit) -> Iterator[AxisEffect]:
         yield from _curves(case, fit, motions, block, {of: slopes[state, of] for of in axis.letters.values()})
 
 
-def curves_of(case: Case, fit: Fit, has_name: bool = False) -> Iterator[AxisEffect]:
-    """Yield the axis' nonlinear effects, or its laws without a name."""
+def curves_of(case: Case, fit: Fit, curves: Iterable[Curve]) -> Iterator[AxisEffect]:
+    """Yield those of the axis' nonlinear terms that the records can show, along the motion of a fit."""
     axis, names = case.axis, case.axis.names.shared
     motions = [_from_trim(_motion(fit, m)) for m in range(len(case.flown))]
     most = {
@@ -68,8 +68,8 @@ def curves_of(case: Case, fit: Fit, has_name: bool = False) -> Iterator[AxisEffe
         if of != "t" and all(of in motion for motion in motions)
     }
     sizes = dict(zip(names, (case.prior_of(1.0, ()).precision ** -0.5).tolist(), strict=True))
-    for k, curve in enumerate(axis.curves):
-        if curve.has_name != has_name or not (curve.block in axis.equations or curve.block in most):
+    for curve in curves:
+        if not (curve.block in axis.equations or curve.block in most):
             continue
         try:
             forms = [np.column_stack(curve.forms(motion, sizes)) for motion in motions]
@@ -86,8 +86,15 @@ def curves_of(case: Case, fit: Fit, has_name: bool = False) -> Iterator[AxisEffe
             steps=tuple(0.1 * each for each in std), bounds=((-np.inf, np.inf),) * len(std),
             fixed=curve.fixed,
         )  # fmt: skip
-        places = tuple((f"{curve.effect}.{k}", name) for name in curve.names)
+        places = tuple((f"{curve.effect}.{axis.curves.index(curve)}", name) for name in curve.names)
         yield AxisEffect(curve.block, variant, places, std, columns=np.vstack(parts))
+
+
+def along(case: Case, effect: AxisEffect, fit: Fit) -> AxisEffect:
+    """Return an effect whose nonlinear terms follow the motion of a fit that contains the effect."""
+    variant = effect.variant
+    curves = (c for c in case.axis.curves if (c.effect, c.fixed) == (variant.effect, variant.fixed))
+    return next((replace(effect, columns=e.columns) for e in curves_of(case, fit, curves)), effect)
 
 
 def _from_trim(motion: Mapping[str, FloatArray]) -> Mapping[str, FloatArray]:
@@ -147,6 +154,11 @@ def _motion(fit: Fit, m: int) -> Mapping[str, FloatArray]:
     moves |= {f"{of}'": rate for of, rate in zip(axis.states, course[events, 1].T, strict=True)}
     moves |= {of: grid.inputs[events, k] - grid.inputs[events][0, k] for k, of in enumerate(axis.inputs)}
     moved = {name: np.interp(t, stamps, y) for name, y in moves.items()}
+    for state in set(axis.states).intersection(assembly.rows[m]):
+        rows = assembly.rows[m][state]
+        bent = np.interp(t, assembly.t[rows], fit.added[rows])
+        moved[state] += bent
+        moved[f"{state}'"] += np.gradient(bent, t)
     for output, rows in assembly.rows[m].items():
         moved[block_of(axis, output)] = np.interp(t, assembly.t[rows], fit.fitted[rows])
     return {**moved, "t": t}

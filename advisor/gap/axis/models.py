@@ -193,7 +193,7 @@ def free_near(case: Case, plain: Fit) -> tuple[Parameter, ...]:
     """
     natural = {f.place for f in case.natural}
     return tuple(
-        replace(f, column=plain.slopes[:, k] if f.place in natural else None)
+        f if f.adds else replace(f, column=plain.slopes[:, k] if f.place in natural else None)
         for k, f in enumerate(plain.free)
     )
 
