@@ -5,6 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from advisor.gap.axis.fit import Fit
+from advisor.gap.axis.residual import noise_at_rest
 from advisor.gap.fitting.measure import gap_between, shrink_between
 from advisor.gap.result import Gap, Shrink
 from advisor.process.arrays import FloatArray
@@ -36,9 +37,9 @@ def measured(
     kept = np.flatnonzero(~np.isnan(after).all(axis=1))
     kept = kept if len(kept) else np.arange(len(after))
     seen = np.flatnonzero(counts[kept].sum(axis=0))
-    # An output that was filtered before storage says nothing of its noise.
-    stated = fit.assembly.least > fit.assembly.axis.least
-    floor = np.where(stated, fit.assembly.least, fit.noise)[seen]
+    # An output that was filtered before storage says nothing of its noise; moving air it does show.
+    least = fit.assembly.least
+    floor = np.where(least > fit.assembly.axis.least, np.maximum(least, noise_at_rest(fit)), fit.noise)[seen]
     counts, squares = counts[:, seen], (before[:, seen], after[:, seen])
     whole = [x[kept].sum(axis=0) / counts[kept].sum(axis=0) for x in squares]
     with np.errstate(invalid="ignore"):  # a manoeuvre may lack an output

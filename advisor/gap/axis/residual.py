@@ -25,10 +25,9 @@ def residual_of(fit: Fit, flown: Flown, share: float) -> Residual:
     linear = fit.linear(flown)
     probes = [_probe(fit, block, courses_of(linear, block), noise) for block in blocks_of(linear)]
     probes.sort(key=lambda probe: -probe.gain)
-    channels = np.unique(fit.assembly.channel)
-    peaks = {k: max(float(np.ptp(fit.assembly.z[fit.assembly.channel == k])) / 2.0, 1e-12) for k in channels}
+    peaks = _peaks(fit)
     motions = [_motion(fit, m, peaks) for m in range(fit.assembly.maneuvers)]
-    powers = [(_moving(fit, k, motions), (NATURAL * peaks[k]) ** 2) for k in channels]
+    powers = [(_moving(fit, k, motions), (NATURAL * peak) ** 2) for k, peak in peaks.items()]
     (power, error, freedom), unit = max(powers, key=lambda it: it[0][0] / it[1])
     by_air = next((probe.explained for probe in probes if probe.block == AIR), 0.0)
     most = probes[0].explained
@@ -36,6 +35,26 @@ def residual_of(fit: Fit, flown: Flown, share: float) -> Residual:
     named = [probe for probe in probes if probe.block != AIR]
     blocks = shares_of([probe.block for probe in named], [share**2 * probe.gain for probe in named])
     return Residual(size, blocks, beside, most * error / unit, freedom)
+
+
+def noise_at_rest(fit: Fit) -> FloatArray:
+    """Return the root mean square residual of each output without the part that grows with the motion.
+
+    Shape (outputs,), SI. Moving air acts at rest as in motion.
+    """
+    peaks = _peaks(fit)
+    motions = [_motion(fit, m, peaks) for m in range(fit.assembly.maneuvers)]
+    noise = fit.noise.copy()
+    for k in peaks:
+        mean = float(np.mean(fit.residual[fit.assembly.channel == k] ** 2))
+        noise[k] = np.sqrt(max(mean - _moving(fit, k, motions)[0], 0.0))
+    return noise
+
+
+def _peaks(fit: Fit) -> Mapping[int, float]:
+    """Return half the range of each measured output, by the output's index."""
+    z, channel = fit.assembly.z, fit.assembly.channel
+    return {int(k): max(float(np.ptp(z[channel == k])) / 2.0, 1e-12) for k in np.unique(channel)}
 
 
 def _motion(fit: Fit, m: int, peaks: Mapping[int, float]) -> FloatArray:
