@@ -9,8 +9,9 @@ from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft.controls import Elevator
 from advisor.gap.axis.effects import axis_effects, changes_of
 from advisor.gap.axis.fit import Begun, Flying, _Motion, outputs
-from advisor.gap.axis.laws import axis_laws, curves_of
-from advisor.gap.axis.models import Case, case_of
+from advisor.gap.axis.laws import along, axis_laws, curves_of
+from advisor.gap.axis.models import Case, case_of, free_near, free_with
+from advisor.gap.axis.residual import noise_at_rest
 from advisor.gap.axis.setting import laid_out, moved_to
 from advisor.gap.axis.starts import Starts
 from advisor.model.axes.pitch import NAMES, PITCH
@@ -115,9 +116,43 @@ def test_an_effect_that_relieves_a_nuisance_parameter_at_its_prior_is_promising(
     assert gained["late_alpha_stamps"] < -5.0
 
 
+def test_a_strong_curve_is_found_along_the_motion_that_it_bends(estimate):
+    """The true M_α2 is q̄·S·c/I_yy of C_m,α2. Along the motion without the curve a sixth is missing."""
+    flown = fly(replace(SETUP, switches={"cm_a2": 6.0}), 7.0)
+    bent = case_of(PITCH, flown, AIRCRAFT, estimate.theta)
+    assert isinstance(bent, Case)
+    plain = bent.fit(bent.begin, bent.natural)
+    curves = (curve for curve in PITCH.curves if curve.effect == "nonlinear_pitching_moment")
+    (effect,) = curves_of(bent, plain, curves)
+    sizes = []
+    for _ in range(3):
+        fit = bent.fit(plain.point, free_with(bent, effect, plain))
+        sizes.append(fit.point.setting[effect.places[0]][0])
+        effect = along(bent, effect, fit)
+    true = 0.5 * 1.225 * UAV.speed**2 * UAV.area * UAV.chord / UAV.iyy * 6.0
+    assert sizes[2] == pytest.approx(true, rel=0.1)
+    assert abs(sizes[2] - true) < abs(sizes[0] - true)
+    beside = free_near(bent, fit)
+    assert [f.column is not None for f in beside if f.place in effect.places] == [True, True]
+
+
+def test_noise_at_rest_is_what_does_not_grow_with_the_motion(case):
+    """White noise of 0.01 rad/s, and a residual of 5 % of the pitch rate."""
+    plain = case.fit(case.begin, case.natural)
+    rows, white = plain.assembly.channel == 1, np.random.default_rng(4).standard_normal(len(plain.fitted))
+    residual = 0.01 * white + 0.05 * (plain.fitted - np.median(plain.fitted[rows]))
+    noisy = replace(plain, fitted=plain.assembly.z - residual)
+    whole = np.sqrt(np.mean(residual[rows] ** 2))
+    assert noise_at_rest(noisy)[1] == pytest.approx(0.01, rel=0.1)
+    assert whole > 0.011
+
+
 def test_every_effect_and_law_of_the_table_is_offered(case):
     plain = case.fit(case.begin, case.natural)
-    named = {e.name for e in [*axis_effects(case.flown), *curves_of(case, plain, PITCH.curves)]}
+    named = {
+        e.name
+        for e in [*axis_effects(case.flown), *curves_of(case, plain, (c for c in PITCH.curves if c.has_name))]
+    }
     assert named >= {
         "actuator_lag", "transport_delay", "actuator_backlash", "late_pitch_rate_stamps", "pitch_rate_scale",
         "alpha_vane_offset", "accelerometer_offset", "thrust_moment", "mass_change", "cg_shift", "icing",

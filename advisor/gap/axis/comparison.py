@@ -43,7 +43,9 @@ def compare_axis(
     if isinstance(model, NoEstimate):
         return model
     case = case_of(axis, maneuvers, aircraft, model.theta)
-    made = None if isinstance(case, NoEstimate) else diagnose_axis(case, prior, kinematics)
+    made = (
+        None if isinstance(case, NoEstimate) else diagnose_axis(replace(case, kinematics=kinematics), prior)
+    )
     diagnosis = made or Diagnosis(
         axis=axis.key, verdict="untested", sentence="", gap=Gap(), model={},
         maneuvers=tuple(m.number for m in maneuvers),

@@ -7,7 +7,6 @@ from typing import NamedTuple
 
 import numpy as np
 
-from advisor.flight.instruments.kinematics import KinematicCheck
 from advisor.gap.alternative import Alternative, AlternativeEvidence, Weighed
 from advisor.gap.axis.effects import axis_effects, block_of, unseen
 from advisor.gap.axis.evidence import colour_share, information_of, posterior_at, squares_of
@@ -34,19 +33,14 @@ from advisor.model.axis import Axis
 from advisor.process.arrays import FloatArray
 
 
-def diagnose_axis(
-    case: Case, prior: FieldPrior = FIELD, kinematics: KinematicCheck | None = None
-) -> Diagnosis | None:
+def diagnose_axis(case: Case, prior: FieldPrior = FIELD) -> Diagnosis | None:
     """Return the probabilities of all explanations; None if no plain fit exists.
 
     If one effect is the likeliest explanation, a second effect is sought in addition to the first.
 
     Parameters
     ----------
-    prior
-        Shares of the answers before the flight.
-    kinematics
-        Check of a measured angle of attack against the motion; None without such an angle.
+    prior : shares of the answers before the flight.
     """
     first = _first(case)
     plain = first and case.fit(first.point, first.free, share=colour_share(first))
@@ -61,10 +55,10 @@ def diagnose_axis(
 
     def beyond(rows: list[Row[AxisModel]]) -> list[Row[AxisModel]]:
         rows = [_named_air(case.axis, row) for row in rows]
-        if kinematics is None:
+        if case.kinematics is None:
             return rows
         computed = case.flown.problem.is_computed
-        return with_offset(rows, kinematics.offset, computed, prior, flight.tried[0])
+        return with_offset(rows, case.kinematics.offset, computed, prior, flight.tried[0])
 
     decision = decided(flight, first_stage(flight), prior, beyond)
     decision = _capped(case, decision, as_given)
@@ -80,7 +74,7 @@ def diagnose_axis(
     remains = dict(waterfall)
     causes = tuple(
         replace(cause, gap_after=remains.get(cause.name, np.nan))
-        for cause in islice(_causes(case, decision, final, as_given, kinematics), MOST_CAUSES)
+        for cause in islice(_causes(case, decision, final, as_given), MOST_CAUSES)
     )
     verdict = verdict_of(weights)
     where = where_of(case.axis, weights.evidence, causes if verdict == "effect" else ())
@@ -88,7 +82,7 @@ def diagnose_axis(
     return Diagnosis(
         **(vars(weights) | {"failed": decision.failed}), axis=case.axis.key, verdict=verdict,
         sentence=_sentence(verdict, where, causes), gap=gap, where=where, causes=causes,
-        kinematics=kinematics,
+        kinematics=case.kinematics,
         shrink=shrink if weights.answer == PARAMETERS or len(decision.chosen) > 1 else None,
         waterfall=waterfall, cannot_see=tuple(unseen(case.flown)),
         peaks={"simulator": peaks_of(as_given), "fitted_derivatives": peaks_of(plain)},
@@ -208,9 +202,7 @@ class _Told(NamedTuple):
         return cls(fit, *posterior_at(fit, case.prior_of(model.tolerance, fit.free), share))
 
 
-def _causes(
-    case: Case, decided: Decided[AxisModel], final: _Told, as_given: Fit, kinematics: KinematicCheck | None
-) -> Iterator[Cause]:
+def _causes(case: Case, decided: Decided[AxisModel], final: _Told, as_given: Fit) -> Iterator[Cause]:
     """Yield the effects of the model, then the alternatives to the first effect."""
     posterior, together, added = decided.posteriors[0], 1.0, decided.chosen[1:]
     for stage, model in zip(decided.posteriors, added, strict=False):
@@ -221,8 +213,8 @@ def _causes(
     others = {a: p for a, p in posterior.by_alternative.items() if a.is_effect and a not in taken}
     for alternative, probability in others.items():
         other = posterior.explanation_of(alternative)
-        if alternative == OFFSET and kinematics is not None:
-            yield cause_of_offset(kinematics, probability, np.nan, posterior.answer == OFFSET)
+        if alternative == OFFSET and case.kinematics is not None:
+            yield cause_of_offset(case.kinematics, probability, np.nan, posterior.answer == OFFSET)
             continue
         if alternative == air_of(case.axis):
             yield _air(case, other, probability, posterior.answer == air_of(case.axis), as_given)

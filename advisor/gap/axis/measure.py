@@ -39,7 +39,9 @@ def measured(
     seen = np.flatnonzero(counts[kept].sum(axis=0))
     # An output that was filtered before storage says nothing of its noise; moving air it does show.
     least = fit.assembly.least
-    floor = np.where(least > fit.assembly.axis.least, np.maximum(least, noise_at_rest(fit)), fit.noise)[seen]
+    stated = least > fit.assembly.axis.least
+    floor = np.maximum(least, noise_at_rest(fit)) if np.any(stated) else fit.noise
+    floor = np.where(stated, floor, fit.noise)[seen]
     counts, squares = counts[:, seen], (before[:, seen], after[:, seen])
     whole = [x[kept].sum(axis=0) / counts[kept].sum(axis=0) for x in squares]
     with np.errstate(invalid="ignore"):  # a manoeuvre may lack an output

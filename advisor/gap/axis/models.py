@@ -6,6 +6,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from advisor.aircraft.aircraft import Aircraft, Estimation
+from advisor.flight.instruments.kinematics import KinematicCheck
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.gap.axis.effects import AxisEffect
 from advisor.gap.axis.fit import Fit, Known, Point, fitted
@@ -47,6 +48,8 @@ class Case:
     """Numbers of the manoeuvres."""
     fixed: Mapping[str, float] = field(default_factory=dict)
     """Derivatives that the user holds at a value, by name."""
+    kinematics: KinematicCheck | None = None
+    """Check of a measured angle of attack against the motion; None without such an angle."""
 
     @property
     def axis(self) -> Axis:
