@@ -121,20 +121,24 @@ def _natural(problem: AxisProblem, aircraft: Aircraft, setting: Setting) -> list
         for x in parameters_of(problem, aircraft)
         if x.entry != "lag_s" or x.place in setting
     ]
-    natural = list(_of_one_control(axis, natural)) if len(axis.inputs) == 1 else natural
+    natural = list(_of_one_control(problem, natural)) if len(axis.inputs) == 1 else natural
     own = {x.place: x for x in _filters(problem)}
     return [x for x in natural if x.place not in own] + [*own.values()]
 
 
-def _of_one_control(axis: Axis, natural: Sequence[Parameter]) -> Iterator[Parameter]:
+def _of_one_control(problem: AxisProblem, natural: Sequence[Parameter]) -> Iterator[Parameter]:
     """Yield the natural parameters of an axis with one control, whose delay is that of all commands."""
+    axis = problem.axis
     common = next((x.prior.std for x in natural if x.place == COMMAND), 0.0)
+    # The filters of gyro and accelerometer delay both behind the command; with a vane that is no mere clock.
+    late = 0.0 if problem.is_computed else REACH * max(axis.filters.values(), default=0.0)
     for x in natural:
         if x.place == COMMAND or (axis.arms_are_causes and x.entry == "arm_m"):
             continue
         if x.place[0] in axis.inputs and x.entry == "delay_s":
             at = x.prior.mean
-            x = replace(x, prior=Prior(at, common), bounds=(at - common, at + common))
+            prior = Prior(at, float(np.hypot(common, late)))
+            x = replace(x, prior=prior, bounds=(at - common, at + common + late))
         yield x
 
 
