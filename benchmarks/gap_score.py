@@ -206,8 +206,9 @@ def table(flights: Sequence[Mapping[str, Any]]) -> Iterator[str]:
         + (f"{np.mean((chances - right) ** 2):.3f}")
     )
     yield f"{'mean probability where right':{_NAME}s} {np.mean(chances[right > 0]):.2f}"
-    seconds = np.median([f["seconds"] for f in flights])
-    yield f"{'processor time of a diagnosis, median':{_NAME}s} {seconds:.1f} s"
+    seconds = [f["seconds"] for f in flights]
+    said = f"{np.median(seconds):.1f} s, at most {np.max(seconds):.1f} s"
+    yield f"{'processor time of a diagnosis, median':{_NAME}s} {said}"
 
 
 def calibration_error(told: np.ndarray, right: np.ndarray) -> float:
