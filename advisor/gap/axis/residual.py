@@ -40,14 +40,16 @@ def residual_of(fit: Fit, flown: Flown, share: float) -> Residual:
 def noise_at_rest(fit: Fit) -> FloatArray:
     """Return the root mean square residual of each output without the part that grows with the motion.
 
-    Shape (outputs,), SI. Moving air acts at rest as in motion.
+    Shape (outputs,), SI. Moving air acts at rest as in motion. Too few manoeuvres tell no part apart, and the
+    noise is zero.
     """
     peaks = _peaks(fit)
     motions = [_motion(fit, m, peaks) for m in range(fit.assembly.maneuvers)]
-    noise = fit.noise.copy()
+    noise = np.zeros_like(fit.noise)
     for k in peaks:
+        power, _, freedom = _moving(fit, k, motions)
         mean = float(np.mean(fit.residual[fit.assembly.channel == k] ** 2))
-        noise[k] = np.sqrt(max(mean - _moving(fit, k, motions)[0], 0.0))
+        noise[k] = np.sqrt(max(mean - power, 0.0)) if freedom else 0.0
     return noise
 
 
