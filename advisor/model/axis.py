@@ -113,6 +113,8 @@ class Change(NamedTuple):
     """Whether the derivatives are divided, as by a larger mass."""
     has_name: bool = True
     """Whether the effect is one of the catalogue; else it is a law without a name."""
+    fixed: Mapping[str, float] = {}
+    """Further parameters of the effect in the aircraft file."""
 
 
 class Curve(NamedTuple):

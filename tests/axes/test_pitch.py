@@ -14,6 +14,7 @@ from advisor.gap.axis.models import Case, case_of, free_near, free_with
 from advisor.gap.axis.residual import noise_at_rest
 from advisor.gap.axis.setting import laid_out, moved_to
 from advisor.gap.axis.starts import Starts
+from advisor.gap.verdict.causes import parameters_of
 from advisor.model.axes.pitch import NAMES, PITCH
 from advisor.oem.axis.estimate import AxisEstimate
 from advisor.oem.axis.estimator import estimate_axis
@@ -161,6 +162,11 @@ def test_every_effect_and_law_of_the_table_is_offered(case):
     laws = {law.name for law in axis_laws(case, plain)}
     assert laws >= {"servo_sticks", "servo_rings", "damping_curve", "oscillator", "elevator_loss"}
     assert not named & laws
-    assert {e.places[0][0] for e in changes_of(case.flown) if e.name == "mass_change"} == {
-        "mass@drift", "mass@1", "mass@2",
-    }  # fmt: skip
+    changes = {e.places[0][0]: e.variant for e in changes_of(case.flown) if e.name == "mass_change"}
+    assert changes.keys() == {"mass@drift", "mass@1", "mass@2"}
+    for since in (1, 2):
+        at_s = changes[f"mass@{since}"].fixed["at_s"]
+        assert case.flown.ends_s[since - 1] < at_s < case.flown.begins_s[since]
+    assert parameters_of(changes["mass@drift"], np.array([0.1]), np.zeros(1))["rate_per_s"].value == (
+        pytest.approx(0.1 / (case.flown.begins_s[2] - case.flown.begins_s[0]))
+    )

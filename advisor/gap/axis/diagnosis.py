@@ -24,7 +24,7 @@ from advisor.gap.inference.posterior import NONE, PARAMETERS, relabelled
 from advisor.gap.inference.prior import FIELD, FieldPrior
 from advisor.gap.result import Cause, Diagnosis, GapVerdict, Trace, Value, Where, ranked
 from advisor.gap.search.air import NATURAL_GUST_ANGLE
-from advisor.gap.verdict.causes import MOST_CAUSES
+from advisor.gap.verdict.causes import MOST_CAUSES, parameters_of
 from advisor.gap.verdict.missing_law import law_in
 from advisor.gap.verdict.reasons import capped, weighed
 from advisor.gap.verdict.statements import what
@@ -229,13 +229,7 @@ def _cause(case: Case, tried: AxisModel, final: _Told, probability: float, prese
     variant, places = effect.variant, [f.place for f in final.fit.free]
     n = len(case.theta)
     at = [n + places.index(place) for place in effect.places]
-    sizes = zip(variant.names, final.mean[at] - base_of(case, effect), final.std[at], strict=True)
-    parameters = {name: Value(float(size), float(error)) for name, size, error in sizes}
-    parameters |= {name: Value(value, 0.0) for name, value in variant.fixed.items()}
-    if variant.inverted:
-        name = variant.names[0]
-        inverse, error = max(parameters[name].value, variant.smallest), parameters[name].std
-        parameters[name] = Value(1.0 / inverse, error / inverse**2)
+    parameters = parameters_of(variant, final.mean[at] - base_of(case, effect), final.std[at])
     cause = Cause(
         variant.effect, variant.block, probability, parameters, (), "", np.nan, present,
         effect.of, effect.named, gain=tried.gain, peaks=peaks_of(final.fit),

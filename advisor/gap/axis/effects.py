@@ -191,15 +191,22 @@ def changes_of(flown: Flown) -> Iterator[AxisEffect]:
     if count < WITNESSES:
         return
     block = {effect.name: effect.block for effect in CATALOGUE.values()}
+    begins, ends = flown.begins_s, flown.ends_s
+    span_s = max(float(begins[-1] - begins[0]), 1.0)
     for kind, change in flown.axis.changes.items():
         k = len(change.names)
         variant = Variant(
             change.effect, block.get(change.effect, "input"), change.names, ((0.0,) * k,), (0.005,) * k,
-            change.bounds, 0.01,
+            change.bounds, 0.01, fixed=change.fixed,
         )  # fmt: skip
-        for since in (DRIFT, *range(1, count)) if k == 1 else range(1, count):
+        for since in [*range(1, count)] if k > 1 else [DRIFT, *range(1, count)]:
+            if since == DRIFT:
+                form = replace(variant, in_file={"rate_per_s": ("step", span_s)})
+            else:
+                at_s = 0.5 * float(ends[since - 1] + begins[since])
+                form = replace(variant, fixed={**change.fixed, "at_s": at_s})
             places = tuple((f"{kind}@{since}", name) for name in change.names)
-            yield AxisEffect(variant.block, variant, places, (change.std,) * k)
+            yield AxisEffect(form.block, form, places, (change.std,) * k)
 
 
 def _arm_std_m(flown: Flown, effect: str) -> float:

@@ -45,6 +45,11 @@ class Flown:
         return np.array([r.outputs[self.axis.needed[0]].t[0] for r in self.problem.records])
 
     @property
+    def ends_s(self) -> FloatArray:
+        """Shape (m,): time of the last sample of each record, s."""
+        return np.array([r.outputs[self.axis.needed[0]].t[-1] for r in self.problem.records])
+
+    @property
     def axis(self) -> Axis:
         """Axis of the records."""
         return self.problem.axis

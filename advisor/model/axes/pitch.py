@@ -120,7 +120,9 @@ _ICED = ("Z_alpha", "Z_delta_e", "M_alpha", "M_delta_e")
 _FREE = ((-0.9, 3.0),)
 CHANGES = {
     "mass": Change("mass_change", ("step",), lambda _: (_equal(*NAMES),), 0.15, _FREE, divides=True),
-    "stability": Change("cg_shift", ("step",), lambda _: (_equal("M_alpha"),), 0.2, _FREE),
+    "stability": Change(
+        "cg_shift", ("step",), lambda _: (_equal("M_alpha"),), 0.2, _FREE, fixed={"stability_only": 1.0}
+    ),
     "arms": Change("cg_shift", ("step",), _arms, 0.2, _FREE),
     "ice": Change(
         "icing", _ICED, lambda _: [_equal(name) for name in _ICED], 0.15,
