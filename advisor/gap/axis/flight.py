@@ -41,10 +41,9 @@ LIKELY = 0.01
 """Probability above which an effect is also fitted with gusts, and above which its sizes are stated."""
 SEARCHES = 4
 """Numerical: largest number of searches for the plain model, each from the likeliest effect's derivatives."""
-_AGAIN = 2
-"""Numerical: number of further fits of a nonlinear term, each along the motion of the fit before."""
 _STEPS = 2
-"""Numerical: number of Gauss-Newton steps from the optimum in white noise to the optimum in gusts."""
+"""Numerical: number of further steps of a model: fits of a nonlinear term, each along the motion of the fit
+before, and Gauss-Newton steps from the optimum in white noise to that in gusts."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -160,7 +159,7 @@ class AxisFlight:
         def work() -> AxisModel | None:
             effect = start.effect
             fit = self.case.fit(start.point, free_with(self.case, effect, at), tolerance, share)
-            for _ in range(_AGAIN if effect.columns is not None and self.case.axis.curves else 0):
+            for _ in range(_STEPS if effect.columns is not None and self.case.axis.curves else 0):
                 if fit is not None:
                     effect = along(self.case, effect, fit)
                     fit = self.case.fit(fit.point, free_with(self.case, effect, at), tolerance, share)
