@@ -39,8 +39,8 @@ def answer(
 
 
 def accepted(maneuvers: Any) -> list[dict[str, Any]]:
-    """Return the accepted manoeuvres of a block."""
-    return [m for m in maneuvers or [] if m["verdict"] == "accepted"]
+    """Return the accepted manoeuvres of a block. A gap lists the numbers of its manoeuvres alone."""
+    return [m for m in maneuvers or [] if isinstance(m, dict) and m["verdict"] == "accepted"]
 
 
 def values_of(document: Mapping[str, Any], name: str) -> list[float]:

@@ -15,7 +15,8 @@ from advisor.gap.axis.flight import AxisFlight, AxisModel
 from advisor.gap.axis.gusts import coloured_likelihood
 from advisor.gap.axis.laws import axis_laws, curves_of, lacking
 from advisor.gap.axis.measure import measured, sums
-from advisor.gap.axis.models import Case, base_of, free_near
+from advisor.gap.axis.models import Case, base_of
+from advisor.gap.axis.setting import moved_to
 from advisor.gap.fitting.prior import ERROR_IF_RIGHT, ERROR_IF_WRONG
 from advisor.gap.inference.engine import Decided, decided, first_stage
 from advisor.gap.inference.explanation import Row
@@ -44,10 +45,7 @@ def diagnose_axis(case: Case, prior: FieldPrior = FIELD) -> Diagnosis | None:
     """
     first = _first(case)
     plain = first and case.fit(first.point, first.free, share=colour_share(first))
-    as_given = plain and case.fit(
-        plain.point._replace(theta=case.theta), free_near(case, plain), ERROR_IF_RIGHT * 1e-3
-    )
-    if plain is None or as_given is None:
+    if plain is None:
         return None
     with_name = (curve for curve in case.axis.curves if curve.has_name)
     table = [*axis_effects(case.flown), *curves_of(case, plain, with_name)]
@@ -61,9 +59,10 @@ def diagnose_axis(case: Case, prior: FieldPrior = FIELD) -> Diagnosis | None:
         return with_offset(rows, case.kinematics.offset, computed, prior, flight.tried[0])
 
     decision = decided(flight, first_stage(flight), prior, beyond)
-    decision = _capped(case, decision, as_given)
+    decision = _capped(case, decision)
     weights, whole = weighed(decision.posteriors[0]), decision.chosen[-1]
     last, left = whole.fit, _held_out(case, whole, decision.heat)
+    as_given = _as_given(case, decision.chosen)
     gap, shrink = measured(last, case.numbers, sums(last, as_given.residual**2), left)
     share = colour_share(last)
     # The whole model leaves less colour than the model before it.
@@ -146,6 +145,20 @@ def _first(case: Case) -> Fit | None:
     return max(fits, key=prior.height, default=None)
 
 
+def _as_given(case: Case, chosen: Sequence[AxisModel]) -> Fit:
+    """Return the simulator as given, with the natural numbers of telemetry that the last model finds.
+
+    Beside the simulator's own derivatives a nuisance parameter would take on the effect that the simulator
+    lacks.
+    """
+    last = chosen[-1].fit
+    setting = last.point.setting
+    for effect in (model.effect for model in chosen if model.effect is not None):
+        setting = moved_to(setting, effect.places, base_of(case, effect))
+    point = last.point._replace(theta=case.theta, setting=setting)
+    return case.fit(point, (), ERROR_IF_RIGHT * 1e-3) or last
+
+
 def _held_out(case: Case, model: AxisModel, heat: float) -> FloatArray:
     """Return the sums of squared errors (m, outputs) of a model on manoeuvres held out one by one.
 
@@ -158,12 +171,12 @@ def _held_out(case: Case, model: AxisModel, heat: float) -> FloatArray:
     return squares
 
 
-def _capped(case: Case, decided: Decided[AxisModel], as_given: Fit) -> Decided[AxisModel]:
+def _capped(case: Case, decided: Decided[AxisModel]) -> Decided[AxisModel]:
     """Return the posterior in which "no gap" is unlikely in the presence of a visible gap.
 
     Without a manoeuvre that can be held out, the posterior is unchanged.
     """
-    plain, last = decided.chosen[0], decided.chosen[-1].fit
+    plain, last, as_given = decided.chosen[0], decided.chosen[-1].fit, _as_given(case, decided.chosen)
     gap, _ = measured(
         last, case.numbers, sums(last, as_given.residual**2), _held_out(case, plain, decided.heat)
     )

@@ -332,8 +332,9 @@ def test_no_gap_is_unlikely_beside_a_visible_gap_of_held_out_manoeuvres(
     monkeypatch.setattr(diagnosis, "measured", lambda *_: (SimpleNamespace(before=gap, after=left), None))
     monkeypatch.setattr(diagnosis, "sums", lambda *_: None)
     monkeypatch.setattr(diagnosis, "_held_out", lambda *_: None)
+    monkeypatch.setattr(diagnosis, "_as_given", lambda *_: models[0].fit)
     case = SimpleNamespace(numbers=(), stated=stated)
-    found = _capped(case, Decided((posterior_of(rows),), models, (), 1.0), models[0].fit)
+    found = _capped(case, Decided((posterior_of(rows),), models, (), 1.0))
     assert found.posteriors[0].answer.kind == answer
     assert len(found.chosen) == chosen
 
