@@ -148,9 +148,9 @@ def _filters(problem: AxisProblem) -> Iterator[Parameter]:
     axis = problem.axis
     measured = set.intersection(*(set(record.outputs) for record in problem.records))
     for of, std in axis.filters.items():
-        if of in measured and problem.is_computed:
+        if of in measured:
             yield Parameter((of, "delay_s"), Prior(0.0, std), bounds=(-REACH * std, REACH * std), step=1e-3)
-        elif axis.hidden in measured and not problem.is_computed:
+        if axis.hidden in measured and not problem.is_computed:
             # A vane passes no filter of gyro and accelerometer, so that its angle is early beside theirs.
             place = (axis.hidden, "delay_s")
             yield Parameter(place, Prior(0.0, std), bounds=(-REACH * std, 0.0), step=1e-3)
