@@ -6,9 +6,11 @@ Residuals are coloured, so one nat of the white-noise likelihood counts as ``sha
 from typing import NamedTuple
 
 import numpy as np
+from scipy.special import erfcx
 
 from advisor.gap.axis.fit import Fit, Known
 from advisor.gap.result import Value
+from advisor.oem.arrow import solved_within
 from advisor.oem.evaluation import errors_of, share_of
 from advisor.oem.extra import Extra
 from advisor.oem.scatter_between import widened_by_scatter
@@ -70,6 +72,28 @@ def posterior_at(fit: Fit, prior: Known, share: float) -> tuple[FloatArray, Floa
     return mean, np.diag(scattered + errors["systematic"]) ** 0.5
 
 
+def within_bounds(fit: Fit, information: Information, prior: Known) -> tuple[Information, float]:
+    """Return the information with each parameter that ends at a bound integrated out, and the nats of that.
+
+    Such a parameter has an exponential density beside its bound, and the others move as it stays there.
+    """
+    matrix, gradient = (np.sum(part, axis=0) for part in information)
+    low, high = (bound - fit.values for bound in fit.bounds)
+    whole = matrix + np.diag(prior.precision)
+    pull = gradient + prior.precision * (prior.mean - fit.values)
+    step = solved_within(whole, pull, low, high)
+    held = (step <= low) | (step >= high)
+    moved = np.where(held, step, 0.0)
+    precision, bend = prior.precision[held], np.diag(whole)[held]
+    slope = np.abs(pull - whole @ step)[held]
+    nats = moved @ (gradient - 0.5 * matrix @ moved)
+    nats -= 0.5 * precision @ (fit.values + moved - prior.mean)[held] ** 2
+    nats += np.sum(np.log(0.5 * (precision / bend) ** 0.5 * erfcx(slope / (2.0 * bend) ** 0.5)))
+    free = ~held
+    change = information.gradient - information.matrix @ moved
+    return Information(information.matrix * np.outer(free, free), change * free), float(nats)
+
+
 def step_of(fit: Fit, information: Information, prior: Known) -> FloatArray:
     """Return the step (s + k,) from the fit to the posterior mean."""
     pull = np.sum(information.gradient, axis=0) - prior.precision * (fit.values - prior.mean)
@@ -94,7 +118,9 @@ def squares_of(fit: Fit, information: Information, prior: Known) -> Squares:
         posterior = matrix - without * information.matrix[m] + np.diag(prior.precision)
         pull = gradient - without * information.gradient[m] - prior.precision * (fit.values - prior.mean)
         rows = fit.assembly.owner == m
-        left = fit.residual[rows] - fit.columns[rows] @ np.linalg.solve(posterior, pull)
+        # A parameter that stays at its bound has no information.
+        step = np.linalg.solve(posterior, pull) * np.any(matrix != 0.0, axis=0)
+        left = fit.residual[rows] - fit.columns[rows] @ step
         squares[without, m] = np.bincount(fit.assembly.channel[rows], left**2, len(fit.noise))
     return Squares(*squares)
 

@@ -7,7 +7,7 @@ import numpy as np
 
 from advisor.gap.alternative import Alternative
 from advisor.gap.axis.effects import AxisEffect, block_of
-from advisor.gap.axis.evidence import colour_share, gained, information_of, squares_of, step_of
+from advisor.gap.axis.evidence import colour_share, gained, information_of, squares_of, step_of, within_bounds
 from advisor.gap.axis.fit import Fit, Known, moved_by
 from advisor.gap.axis.gusts import Gusts, coloured_likelihood, gusts_of
 from advisor.gap.axis.laws import along
@@ -276,11 +276,12 @@ class AxisFlight:
 
     def _model(self, effect: AxisEffect | None, fit: Fit, plain: Fit, share: float) -> AxisModel:
         """Return a model with its evidence, which a loss on held-out manoeuvres may reduce."""
-        information, likelihood = information_of(fit, share), share**2 * fit.likelihood
+        information, nats = within_bounds(fit, information_of(fit, share), self._wide(fit))
+        likelihood = share**2 * fit.likelihood + nats
         matrix, gradient = (np.sum(part, axis=0) for part in information)
         evidence, natural = self._weighed(fit, effect, likelihood, matrix, gradient)
         # A search that ends early, as at a bound, leaves a step to the optimum, which the evidence has taken.
-        step = step_of(fit, information, self._wide(fit))
+        step = step_of(fit, information, self._wide(fit)) * np.any(matrix != 0.0, axis=0)
         likelihood += float(gradient @ step - 0.5 * step @ matrix @ step)
         model = AxisModel(
             alternative=None, effect=effect, fit=fit, evidence=evidence, natural=natural,
@@ -292,7 +293,8 @@ class AxisFlight:
         extra = np.log(2.0) if effect.variant.bounds[0][0] >= 0.0 else 0.0
         if effect.sides is not None:
             extra -= len(self.case.flown) * np.log(len(effect.sides[1]))
-        was = squares_of(plain, information_of(plain, share), self._wide(plain))
+        inside, _ = within_bounds(plain, information_of(plain, share), self._wide(plain))
+        was = squares_of(plain, inside, self._wide(plain))
         now = squares_of(fit, information, self.case.prior_of(model.tolerance, fit.free))
         # A manoeuvre that alone moves a control is predicted by the prior, which says nothing of an effect.
         kept = self.case.flown.foretold

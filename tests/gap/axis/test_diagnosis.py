@@ -424,6 +424,7 @@ def test_an_effect_loses_nothing_on_a_manoeuvre_that_only_the_prior_predicts(mon
     nothing = SimpleNamespace(matrix=np.zeros((1, 1, 1)), gradient=np.zeros((1, 1)))
     monkeypatch.setattr(flight_of_axis, "squares_of", of_each)
     monkeypatch.setattr(flight_of_axis, "information_of", lambda *_: tuple(vars(nothing).values()))
+    monkeypatch.setattr(flight_of_axis, "within_bounds", lambda _, information, __: (information, 0.0))
     monkeypatch.setattr(flight_of_axis, "step_of", lambda *_: np.zeros(1))
     monkeypatch.setattr(flight_of_axis, "change_of", lambda *_: 0.1)
     side = AxisFlight(case, plain, [effect])

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from advisor.gap.axis import evidence
-from advisor.gap.axis.evidence import gained, information_of, posterior_at, squares_of, step_of
+from advisor.gap.axis.evidence import gained, information_of, posterior_at, squares_of, step_of, within_bounds
 from advisor.gap.axis.fit import Known
 from advisor.gap.inference.marginal import marginal
 
@@ -35,6 +35,7 @@ class Line:
     def assembly(self):
         return Rows(np.repeat([0, 1, 2], 40), np.zeros(len(X), int))
 
+    bounds = (np.array([-np.inf]), np.array([np.inf]))
     columns = X[:, None]
     weight = np.full(len(X), 1.0 / NOISE)
     noise = np.array([NOISE])
@@ -70,6 +71,21 @@ def test_the_evidence_is_the_integral_of_likelihood_times_prior(share):
     found = marginal(share**2 * line.likelihood, matrix, gradient, prior, prior).right
     # The closed form leaves out the factor (2π)^½ that all models share.
     assert found == pytest.approx(integral, abs=1e-3)
+
+
+def test_a_parameter_that_ends_at_its_bound_counts_beside_it():
+    """The bound lies below the optimum: only the values below it are integrated."""
+    line, prior = Line(1.9, Z), known(1.5, 0.4)
+    line.bounds = (np.array([-np.inf]), np.array([1.95]))
+    whole = information_of(line, 1.0)
+    inside, nats = within_bounds(line, whole, prior)
+    step = np.linspace(-1.0, 0.05, 200001)
+    each = whole.gradient.sum() * step - 0.5 * whole.matrix.sum() * step**2
+    each -= 0.5 * ((1.9 + step - 1.5) / 0.4) ** 2
+    integral = each.max() + np.log(np.trapezoid(np.exp(each - each.max()), step))
+    matrix, gradient = (np.sum(part, axis=0) for part in inside)
+    found = marginal(nats, matrix, gradient, *(prior.prior(line.values),) * 2).right
+    assert found == pytest.approx(integral - 0.5 * np.log(2.0 * np.pi * 0.4**2), abs=1e-3)
 
 
 def test_the_posterior_lies_between_prior_and_data_by_their_information():
