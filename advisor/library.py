@@ -14,13 +14,12 @@ from advisor.analysis.gap import as_in_tables, compare_logs
 from advisor.analysis.marks_file import read_by_hand
 from advisor.analysis.whole_flights import read_whole
 from advisor.campaign.state import CampaignState
-from advisor.flight.maneuvers.events import ManeuverFlown
-from advisor.flight.maneuvers.maneuver import Maneuver
-from advisor.flight.signals.power_on import PowerOn
+from advisor.flight.maneuvers.maneuver import Maneuver, ManeuverFlown
+from advisor.flight.signals.track import PowerOn
 from advisor.flight.stream.stream import FlightStream
 from advisor.flight.vehicle.vehicle import Vehicle
 from advisor.gap.result import Diagnosis
-from advisor.mavlink.logs.whole import read_whole_log
+from advisor.mavlink.logs.logs import read_whole_log
 from advisor.oem.estimate import Estimate, NoEstimate
 from advisor.oem.estimator import estimate as estimate_one
 from advisor.oem.estimator import estimate_jointly

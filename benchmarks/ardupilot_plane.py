@@ -25,7 +25,7 @@ from scipy.optimize import fsolve
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft.reference import PARAMETERS, SIDE_PARAMETERS, Reference
-from advisor.analysis.axes.side_comparison import accepted_of, compare_side_flown
+from advisor.analysis.axis_flown import accepted_of, compare_side_flown
 from advisor.analysis.gap import compare_logs
 from advisor.analysis.gap_flights import maneuvers_of
 from advisor.analysis.whole_flights import read_whole

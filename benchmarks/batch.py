@@ -21,7 +21,7 @@ from tempfile import TemporaryDirectory
 import click
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.flight.maneuvers.events import ManeuverFlown
+from advisor.flight.maneuvers.maneuver import ManeuverFlown
 from advisor.flight.stream.stream import FlightStream
 from advisor.mavlink.logs.formats.telemetry import read_tlog
 from advisor.mavlink.wire.scan import STAMP_BYTES

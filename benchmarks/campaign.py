@@ -14,8 +14,7 @@ from pathlib import Path
 
 import numpy as np
 
-from advisor.aircraft.aircraft import Aircraft
-from advisor.aircraft.controls import Elevator
+from advisor.aircraft.aircraft import Aircraft, Elevator
 from advisor.campaign.campaign import Campaign, ManeuverJudged
 from advisor.campaign.state import JudgedManeuver
 from advisor.flight.signals.messages import Columns

@@ -20,7 +20,7 @@ import numpy as np
 import yaml
 
 from advisor.aircraft.reference import SPEED_EXPONENTS
-from advisor.flight.signals.true_airspeed import true_over_read
+from advisor.flight.signals.track import true_over_read
 from advisor.library import find, judge, read
 from advisor.report.document import analysis_document
 from benchmarks.endure import packets

@@ -21,7 +21,7 @@ from advisor.aircraft_file.read import load_aircraft
 from advisor.campaign.campaign import Campaign
 from advisor.decision.envelope import flown
 from advisor.doctor.examiner import Examiner
-from advisor.mavlink.logs.whole import read_whole_log
+from advisor.mavlink.logs.logs import read_whole_log
 from advisor.oem.estimate import Estimate
 from advisor.oem.estimator import estimate as estimate_one
 

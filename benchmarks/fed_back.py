@@ -19,7 +19,7 @@ from typing import Any
 import click
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.analysis.axes.side_comparison import compare_side_flown
+from advisor.analysis.axis_flown import compare_side_flown
 from advisor.analysis.gap import compare_logs
 from advisor.analysis.whole_flights import read_whole
 from advisor.cli.options import read_aircraft

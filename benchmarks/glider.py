@@ -20,7 +20,7 @@ from advisor.aircraft.standard_gravity import GRAVITY_M_S2
 from advisor.aircraft_file.read import load_aircraft
 from advisor.analysis.gap_flights import maneuvers_of, without_refused
 from advisor.flight.maneuvers.maneuver import Maneuver
-from advisor.flight.signals.true_airspeed import standard_density, standard_pressure
+from advisor.flight.signals.track import standard_density, standard_pressure
 from advisor.oem.lag import lagged
 from advisor.process.arrays import FloatArray
 from advisor.simulators.compare import Compared, compare

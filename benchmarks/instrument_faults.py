@@ -25,7 +25,7 @@ from advisor.mavlink.logs.logs import open_log
 from advisor.process.arrays import FloatArray
 from advisor.report.document import analysis_document
 from advisor.words.problems import UnusableInputError
-from advisor.words.quantiles import NORMAL_95
+from advisor.words.quantities import NORMAL_95
 
 Document = dict[str, Any]
 Change = Callable[[FloatArray, FloatArray], FloatArray]

@@ -19,7 +19,7 @@ from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft_file.read import load_aircraft
 from advisor.campaign.campaign import Campaign
 from advisor.campaign.state import CampaignState, LateralState
-from advisor.mavlink.logs.whole import read_whole_log
+from advisor.mavlink.logs.logs import read_whole_log
 from advisor.session.timeline import Timeline
 from benchmarks.studies.forecast import Forecast, score
 

@@ -17,12 +17,10 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
 
-from advisor.aircraft.aircraft import Aircraft
-from advisor.aircraft.controls import SideControl
-from advisor.aircraft.sensors import Alpha, Beta
+from advisor.aircraft.aircraft import Aircraft, Alpha, Beta, SideControl
 from advisor.aircraft.standard_gravity import GRAVITY_M_S2
 from advisor.aircraft_file.read import load_aircraft
-from advisor.analysis.log_series import LogSeries
+from advisor.analysis.marks_file import LogSeries
 from advisor.campaign.campaign import Campaign
 from advisor.campaign.state import LateralState
 from advisor.model.axes.lateral import LATERAL

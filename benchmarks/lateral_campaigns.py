@@ -14,10 +14,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from advisor.aircraft.aircraft import Aircraft
-from advisor.aircraft.controls import SideControl
-from advisor.campaign.axes.lateral_campaign import LateralCampaign
-from advisor.campaign.hand_decisions import ByHand
+from advisor.aircraft.aircraft import Aircraft, SideControl
+from advisor.campaign.axis_campaign import LateralCampaign
+from advisor.campaign.state import ByHand
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.oem.axis.estimate import AxisEstimate
 from advisor.process.parts import Parts

@@ -16,8 +16,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from advisor.aircraft.aircraft import Aircraft
-from advisor.aircraft.controls import SideControl
+from advisor.aircraft.aircraft import Aircraft, SideControl
 from advisor.aircraft.reference import SIDE_PARAMETERS
 from advisor.flight.maneuvers.maneuver import Maneuver, Span
 from advisor.flight.signals.record import Channel
@@ -29,7 +28,7 @@ from advisor.model.axes.lateral import LATERAL
 from advisor.oem.estimate import NoEstimate
 from advisor.simulators.axes.side_difference import side_without_difference
 from advisor.simulators.specification import simulator_of
-from advisor.words.quantiles import NORMAL_95
+from advisor.words.quantities import NORMAL_95
 from benchmarks.lateral_laws import LAWS, flight_with
 from sim.effects.side import side_kit
 from sim.flight import Flight, Sample

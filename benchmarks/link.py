@@ -70,10 +70,9 @@ def processor_time(pid: int) -> float:
 
 def measure(seconds: float, rate: float) -> None:
     """Be the advisor; print the table."""
-    from advisor.aircraft.aircraft import Aircraft
-    from advisor.aircraft.controls import Elevator
+    from advisor.aircraft.aircraft import Aircraft, Elevator
     from advisor.flight.stream.stream import FlightStream
-    from advisor.mavlink.link.keeping import Keeping, new_door
+    from advisor.mavlink.link.kept_link import Keeping, new_door
     from advisor.mavlink.link.link_process import LinkProcess
 
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:

@@ -21,11 +21,7 @@ import numpy as np
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.analysis.gap import compare_logs
-from advisor.flight.signals.true_airspeed import (
-    SEA_LEVEL_DENSITY_KG_M3,
-    standard_density,
-    standard_pressure,
-)
+from advisor.flight.signals.track import SEA_LEVEL_DENSITY_KG_M3, standard_density, standard_pressure
 from advisor.gap.result import Diagnosis
 from advisor.simulators.jsbsim_model import find_model
 from sim.compare import distances

@@ -21,8 +21,8 @@ import numpy as np
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.campaign.campaign import Campaign
+from advisor.session.conducting import Tempo
 from advisor.session.remote import ConductorTask, RemoteConductor
-from advisor.session.source import Tempo
 from advisor.tui.app import AdvisorApp
 from advisor.tui.settings import Settings
 from benchmarks import long_flight

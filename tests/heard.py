@@ -8,8 +8,7 @@ from typing import Any
 import numpy as np
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.flight.maneuvers.events import FlightEvent, ManeuverFlown, Notice, SideManeuverFlown
-from advisor.flight.maneuvers.maneuver import Maneuver
+from advisor.flight.maneuvers.maneuver import FlightEvent, Maneuver, ManeuverFlown, Notice, SideManeuverFlown
 from advisor.flight.signals.messages import Columns
 from advisor.flight.stream.stream import FlightStream
 from advisor.mavlink.logs.logs import open_log

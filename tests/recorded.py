@@ -20,15 +20,13 @@ import pytest
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.analysis import axis_flown, gap, whole_flights
-from advisor.analysis.axes import side_comparison as side_gap
-from advisor.analysis.log_series import LogSeries
+from advisor.analysis import axis_flown as side_gap
+from advisor.analysis.marks_file import LogSeries
 from advisor.analysis.whole_flights import WholeFlights
-from advisor.campaign import joint_estimate, single_maneuver
-from advisor.campaign.axes import lateral_campaign
-from advisor.cli import analyze, page_content
-from advisor.cli.axes import lateral_gap
+from advisor.campaign import axis_campaign, joint_estimate, single_maneuver
+from advisor.cli import analyze, axis_gap, page_content
 from advisor.doctor import expectation
-from advisor.exports.models.jsbsim import run as jsbsim_run
+from advisor.exports.models.jsbsim import source as jsbsim_run
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.oem.axis.estimator import JointSearch
 from advisor.oem.estimate import NoEstimate
@@ -41,7 +39,7 @@ Result = TypeVar("Result")
 def use_recorded(patch: pytest.MonkeyPatch) -> None:
     """Let commands read the analysis of a log that another test of this run has analysed already."""
     whole, compared = _once(whole_flights.read_whole), _once(gap.compare_logs)
-    for module in (whole_flights, page_content, side_gap, axis_flown, lateral_gap):
+    for module in (whole_flights, page_content, side_gap, axis_flown, axis_gap):
         patch.setattr(module, "read_whole", whole)
     patch.setattr(gap, "compare_logs", compared)
     patch.setattr(gap, "compare_flown", _diagnosed_once(gap.compare_flown))
@@ -88,7 +86,7 @@ def _diagnosed_once(compare_flown: Callable[..., Result]) -> Callable[..., Resul
 
 def record_estimates(patch: pytest.MonkeyPatch) -> None:
     """Let campaigns, the doctor and exports read estimates and slopes that another test of this run made."""
-    for module, name in ((single_maneuver, "estimate"), (lateral_campaign, "estimate_axis")):
+    for module, name in ((single_maneuver, "estimate"), (axis_campaign, "estimate_axis")):
         patch.setattr(module, name, _estimated_once(getattr(module, name)))
     patch.setattr(expectation, "estimate_jointly", _estimated_once(expectation.estimate_jointly))
     slopes = jsbsim_run._answered

@@ -8,13 +8,11 @@ from math import inf
 from pathlib import Path
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.analysis.log_series import LogSeries
+from advisor.analysis.marks_file import LogSeries
 from advisor.campaign.campaign import Campaign
 from advisor.campaign.state import CampaignState
-from advisor.report.follow import follow
-from advisor.report.text import AnalysisText
-from advisor.session.source import LinkHealth
-from advisor.session.view import View
+from advisor.report.text import AnalysisText, follow
+from advisor.session.conducting import LinkHealth, View
 from advisor.tui.advice import advise
 from tests.printed import printed_lines, taken
 

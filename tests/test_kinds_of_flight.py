@@ -9,9 +9,7 @@ from tempfile import mkdtemp
 import numpy as np
 import pytest
 
-from advisor.aircraft.aircraft import Aircraft
-from advisor.aircraft.controls import Elevator
-from advisor.aircraft.sensors import Alpha
+from advisor.aircraft.aircraft import Aircraft, Alpha, Elevator
 from advisor.campaign.campaign import Campaign
 from advisor.mavlink.logs.logs import open_log
 from sim.flight import Flight

@@ -12,8 +12,7 @@ import numpy as np
 import pytest
 
 import advisor as library
-from advisor.aircraft.aircraft import Aircraft
-from advisor.aircraft.controls import Elevator
+from advisor.aircraft.aircraft import Aircraft, Elevator
 from advisor.aircraft.reference import PARAMETERS
 from advisor.analysis import gap
 from advisor.campaign.state import CampaignState

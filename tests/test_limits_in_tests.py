@@ -56,7 +56,7 @@ def test_a_limit_is_seen_however_it_is_taken(text: str) -> None:
     [
         "from advisor.doctor.limits import loss_limits",
         "from advisor.aircraft.standard_gravity import GRAVITY_M_S2",
-        "from advisor.decision.inputs import ORDERS",
+        "from advisor.decision.first_unit import ORDERS",
         "from sim.airframe import GRAVITY_M_S2",
     ],
 )

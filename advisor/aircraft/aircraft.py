@@ -4,15 +4,181 @@ The classes hold data and compute nothing. ``advisor.aircraft_file.read`` reads 
 every mistake at once. The core takes them as arguments and never opens a file.
 """
 
+import hashlib
+import json
 from collections.abc import Container, Mapping
 from dataclasses import dataclass, field
-from typing import Annotated, Literal
+from typing import Annotated, Literal, Self
 
 from advisor.aircraft.added_term import AddedTerm, parse_term
-from advisor.aircraft.controls import Elevator, SideControl
 from advisor.aircraft.key import Key
 from advisor.aircraft.reference import FmuVariables, Reference
-from advisor.aircraft.sensors import Accelerometer, Alpha, Beta
+from advisor.words.problems import printable
+
+
+@dataclass(frozen=True)
+class Beta:
+    """Source of the sideslip."""
+
+    source: Annotated[str, Key(
+        "auto | aoa_ssa | named_value:NAME | none, positive with wind from the right. ``auto`` uses what "
+        "a vane measures, and nothing that an autopilot derives.",
+        example="auto",
+    )] = "auto"  # fmt: skip
+    vane_arm_m: Annotated[float | None, Key(
+        "Distance of the sideslip vane ahead of the centre of gravity, m. None: that of the angle of attack.",
+        example="0.0",
+    )] = None  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Alpha:
+    """Source of the angle of attack."""
+
+    source: Annotated[str, Key(
+        "auto | aoa_ssa | derived | named_value:NAME | none. With ``none`` the estimate uses no angle of "
+        "attack.",
+        example="auto",
+    )] = "auto"  # fmt: skip
+    vane_arm_m: Annotated[float | None, Key(
+        "Distance of the vane ahead of the centre of gravity, m. None: unknown. 0: the log has corrected "
+        "angles.",
+        example="0.0",
+        cost="The place of the vane is estimated with the derivatives: wider intervals of Z_α and Z_q.",
+        mend="measure the distance along the fuselage",
+    )] = None  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Accelerometer:
+    """Position of the accelerometer."""
+
+    arm_m: Annotated[float | None, Key(
+        "Distance of the IMU ahead of the centre of gravity, m. None: unknown.",
+        example="0.0",
+        cost=(
+            "The accelerometer counts as at the centre of gravity, unless alpha.vane_arm_m is given: then"
+            " its place is estimated."
+        ),
+        mend="measure the distance along the fuselage",
+    )] = None  # fmt: skip
+
+
+Pairs = tuple[tuple[float, float], ...]
+"""A calibration: pairs (PWM in us, deflection in deg), with linear interpolation between pairs."""
+
+
+@dataclass(frozen=True)
+class ElevatorOutput:
+    """One of several servo outputs that make the elevator's deflection."""
+
+    output: Annotated[int, Key("Servo output 1..32.")]
+    calibration: Annotated[Pairs | None, Key(
+        "Pairs (PWM in us, deflection in deg, positive where the nose goes down). None: "
+        "SERVOn_MIN/TRIM/MAX.",
+    )] = None  # fmt: skip
+    weight: Annotated[float, Key(
+        "Share of the pitch effect per degree of deflection, relative to the other outputs.",
+    )] = 1.0  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Elevator:
+    """Outputs, calibration and servo, which turn the elevator command into a deflection."""
+
+    output: Annotated[int | Literal["auto"], Key(
+        "Servo output 1..32. ``auto``: the outputs whose SERVOn_FUNCTION is elevator (19), elevon or "
+        "V-tail.",
+        example="auto",
+        cost="The elevator is found by the autopilot's parameters; without them a log or link is refused.",
+        mend="write the number of the servo output",
+    )] = "auto"  # fmt: skip
+    calibration: Annotated[Pairs | None, Key(
+        "Pairs (PWM in us, deflection in deg, trailing edge down positive), with linear interpolation. "
+        "None: SERVOn_MIN/TRIM/MAX and ±25 deg.",
+        example="[[1100, -25.0], [1500, 0.0], [1900, 25.0]]",
+        cost="The servo's end points count as 25 deg, so Z_δe and M_δe have an assumed scale.",
+        mend="measure the deflection at three pulse widths",
+    )] = None  # fmt: skip
+    outputs: tuple[ElevatorOutput, ...] = ()
+    """All servo outputs that make the deflection. The key ``outputs`` replaces ``output`` and
+    ``calibration``."""
+    lag_s: Annotated[float | None, Key(
+        "First-order lag of the servo, s. None: unknown, and every result says so.",
+        example="0.05",
+        cost=(
+            "The lag is estimated with the derivatives. Intervals are wider, and M_α and M_δe are too "
+            "small if a flight does not determine the lag."
+        ),
+        mend="film a step of the servo on the ground; the lag is the time to 63 % of the step",
+        within=(0.0, 2.0),
+    )] = None  # fmt: skip
+    delay_s: Annotated[float | None, Key(
+        "Delay between command and servo, s. None: unknown.",
+        example="0.02",
+        cost="The delay counts as zero; a real delay biases M_α and M_q.",
+        mend="film a step of the servo on the ground; the delay ends when the arm begins to move",
+        within=(0.0, 2.0),
+    )] = None  # fmt: skip
+
+    @property
+    def is_calibrated(self) -> bool:
+        """Whether the file gives a calibration for every output of the elevator."""
+        return self.calibration is not None or any(output.calibration for output in self.outputs)
+
+    @property
+    def ends_deg(self) -> tuple[float, float] | None:
+        """Lowest and highest deflection of the calibration, deg. None without a calibration."""
+        calibrations = [(output.weight, output.calibration) for output in self.outputs if output.calibration]
+        if self.calibration:
+            calibrations = [(1.0, self.calibration)]
+        if not calibrations:
+            return None
+        total = sum(weight for weight, _ in calibrations)
+        low = sum(weight * min(deg for _, deg in pairs) for weight, pairs in calibrations)
+        high = sum(weight * max(deg for _, deg in pairs) for weight, pairs in calibrations)
+        return low / total, high / total
+
+
+@dataclass(frozen=True)
+class SideControl:
+    """Outputs, calibration and servo of the aileron or of the rudder."""
+
+    output: Annotated[int | Literal["auto"], Key(
+        "Servo output 1..32. ``auto``: all outputs whose SERVOn_FUNCTION is the control's (4 aileron, 21 "
+        "rudder), with elevons, flaperons and V-tails.",
+        example="auto",
+        cost="The autopilot's parameters must name the output; without them roll and yaw are not analyzed.",
+        mend="write the number of the servo output",
+    )] = "auto"  # fmt: skip
+    calibration: Annotated[Pairs | None, Key(
+        "Pairs (PWM in us, deflection in deg), with linear interpolation. A positive aileron rolls to the "
+        "left, a positive rudder yaws to the left. None: SERVOn_MIN/TRIM/MAX and ±25 deg.",
+        example="[[1100, -25.0], [1500, 0.0], [1900, 25.0]]",
+        cost="The servo's end points count as 25 deg, so Y, L and N by this control have an assumed scale.",
+        mend="measure the deflection at three pulse widths",
+    )] = None  # fmt: skip
+    lag_s: Annotated[float | None, Key(
+        "First-order lag of the servo, s. None: unknown.",
+        example="0.05",
+        cost="The lag is estimated with the derivatives: L_p and the control's moments are less certain.",
+        mend="film a step of the servo on the ground; the lag is the time to 63 % of the step",
+        within=(0.0, 2.0),
+    )] = None  # fmt: skip
+    delay_s: Annotated[float | None, Key(
+        "Delay between command and servo, s. None: unknown.",
+        example="0.02",
+        within=(0.0, 2.0),
+    )] = None  # fmt: skip
+
+    @property
+    def ends_deg(self) -> tuple[float, float] | None:
+        """Lowest and highest deflection of the calibration, deg. None without a calibration."""
+        if self.calibration is None:
+            return None
+        angles = [deg for _, deg in self.calibration]
+        return min(angles), max(angles)
+
 
 Rule = Literal["continuous", "separate", "information"]
 Criterion = Literal["eq12", "eq13"]
@@ -127,8 +293,6 @@ class Limits:
     bank_deg: Annotated[float, Key(
         "Largest bank angle in a manoeuvre, deg.",
         example="30.0",
-        question="Largest bank within a test manoeuvre, deg",
-        answer="30",
         positive=True,
     )] = 30.0  # fmt: skip
     airspeed_change_percent: Annotated[float, Key(
@@ -138,7 +302,6 @@ class Limits:
     alpha_deg: Annotated[float | None, Key(
         "Largest angle of attack in a manoeuvre, deg. None: no limit.",
         example="12.0",
-        question="Largest angle of attack within a test manoeuvre, deg",
         cost="No advice and no verdict guards against the stall.",
         mend="write an angle a few degrees below the stall",
         positive=True,
@@ -152,8 +315,6 @@ class Aircraft:
     name: Annotated[str, Key(
         "Name on screens and pages.",
         example="my aircraft",
-        question="Name of the aircraft",
-        answer="my aircraft",
     )] = "aircraft"  # fmt: skip
     elevator: Elevator = field(default_factory=Elevator)
     aileron: SideControl = field(default_factory=SideControl)
@@ -175,7 +336,6 @@ class Aircraft:
         "Air speed at which derivatives are given, as the aircraft reads it, m/s. "
         "None: the mean over the accepted manoeuvres.",
         example="20.0",
-        question="Air speed at which derivatives are given, m/s",
         cost=(
             "The derivatives hold at the mean air speed of each flight, so two flights are not compared "
             "at one."
@@ -215,3 +375,26 @@ class Aircraft:
         """Air speed that the file gives for a log without air speed, m/s. None: the file gives no air
         speed."""
         return self.airspeed_m_s or self.reference_airspeed_m_s
+
+
+_LETTERS = 20
+"""Longest name, with which the text ``ADVISOR SCRIPT name hash`` has less than 50 bytes."""
+
+
+@dataclass(frozen=True, slots=True)
+class ScriptIdentity:
+    """Name and calibrations of an aircraft file, as the texts of a script state them."""
+
+    name: str
+    """Name of the aircraft in ASCII, short enough for a text of 50 bytes."""
+    calibration: str
+    """Hash that changes with any calibration or stated output."""
+
+    @classmethod
+    def of(cls, aircraft: Aircraft) -> Self:
+        name = printable(aircraft.name).encode("ascii", "replace").decode()[:_LETTERS].strip()
+        elevator = aircraft.elevator
+        stated = [(each.output, each.calibration) for each in (elevator, aircraft.aileron, aircraft.rudder)]
+        parts = [(each.output, each.calibration, each.weight) for each in elevator.outputs]
+        text = json.dumps([stated, parts])
+        return cls(name, hashlib.sha256(text.encode()).hexdigest()[:8])

@@ -1,4 +1,4 @@
-"""Key of the aircraft file, with all texts that the file, its page, its questions and its check show."""
+"""Key of the aircraft file, with all texts that the file, its page and its check show."""
 
 from collections.abc import Iterator
 from dataclasses import MISSING, dataclass, fields, is_dataclass, replace
@@ -22,10 +22,6 @@ class Key:
     """Quantity, sign, and the meaning of the default, in sentences."""
     example: str = ""
     """Value in YAML for the comment in a new file. Empty: a new file leaves the key out."""
-    question: str = ""
-    """Question that `aircraft new` asks on the terminal. Empty: never asked."""
-    answer: str = "-"
-    """Usual answer to the question; ``-`` means that the value is not known and the key is left out."""
     cost: str = ""
     """Sentence on the cost of the missing key. Empty: a missing key costs nothing."""
     mend: str = ""

@@ -37,7 +37,6 @@ class Reference:
     mass_kg: Annotated[float | None, Key(
         "Mass of the aircraft as flown, kg.",
         example="10.0",
-        question="Mass, kg",
         cost="No non-dimensional lift derivatives, and no static margin.",
         mend="weigh the aircraft",
         positive=True,
@@ -45,7 +44,6 @@ class Reference:
     wing_area_m2: Annotated[float | None, Key(
         "Reference area of the coefficients, m².",
         example="0.6",
-        question="Wing area, m²",
         cost="No non-dimensional derivatives (C_m_alpha and the like).",
         mend="take the area from the drawing",
         positive=True,
@@ -60,7 +58,6 @@ class Reference:
     chord_m: Annotated[float | None, Key(
         "Mean aerodynamic chord, m.",
         example="0.25",
-        question="Mean aerodynamic chord, m",
         cost="No non-dimensional derivatives, and no static margin.",
         mend="take the chord from the drawing",
         positive=True,
@@ -68,7 +65,6 @@ class Reference:
     iyy_kg_m2: Annotated[float | None, Key(
         "Pitching moment of inertia about the centre of gravity, kg m².",
         example="1.0",
-        question="Pitching moment of inertia, kg m²",
         cost="No non-dimensional moment derivatives, and no static margin.",
         mend="swing the aircraft as a pendulum, or take the value of the design",
         positive=True,
@@ -91,7 +87,6 @@ class Reference:
         "Distance of the centre of gravity behind the leading edge of the mean aerodynamic chord, % of "
         "the chord.",
         example="25.0",
-        question="Centre of gravity behind the leading edge, percent of the chord",
         cost="The static margin is not turned into the place of the neutral point.",
         mend="balance the aircraft",
         within=(-200.0, 200.0),

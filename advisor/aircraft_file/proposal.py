@@ -1,6 +1,5 @@
 """A new aircraft file from one log, and its text."""
 
-from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from math import isfinite
 from statistics import median
@@ -10,12 +9,11 @@ from typing import Any
 import yaml
 
 from advisor.aircraft.key import Key
-from advisor.aircraft_file.lacks import KEYS
-from advisor.aircraft_file.log_facts import LogFacts
-from advisor.flight.elevator.axes.side_controls import SIDES
+from advisor.aircraft_file.log_facts import KEYS, LogFacts
 from advisor.flight.elevator.elevator_guess import Guess
+from advisor.flight.elevator.elevator_outputs import SIDES
 from advisor.flight.signals.derived_alpha import DERIVED_ALPHA
-from advisor.flight.signals.true_airspeed import standard_density
+from advisor.flight.signals.track import standard_density
 from advisor.flight.vehicle.surfaces import Scale, Surface, joined_numbers
 from advisor.words.problems import Problem
 
@@ -30,7 +28,7 @@ class Draft:
     head: list[str] = field(default_factory=list)
     """Sentences at the beginning of the file."""
     values: dict[str, Any] = field(default_factory=dict)
-    """Value of each key, by the key's path. The key ``elevator.outputs`` replaces output and calibration."""
+    """Value of each key, by the key's path."""
     comments: dict[str, str] = field(default_factory=dict)
     """Source of each key's value, or the known facts instead of a value, by the key's path."""
     examples: dict[str, str] = field(default_factory=dict)
@@ -49,7 +47,7 @@ def aircraft_text(draft: Draft) -> str:
     YAML that ``advisor.aircraft_file.read.parse_aircraft`` reads. A key without a value is a comment.
     """
     lines = [line for sentence in draft.head for line in _commented(sentence)]
-    section, values = "", draft.values
+    section = ""
     for key in KEYS:
         if key.path in draft.needless:
             continue
@@ -58,17 +56,8 @@ def aircraft_text(draft: Draft) -> str:
             section = within
             # An empty section counts as left for later.
             lines += ["", f"{section}:"] if section else [""]
-            if section == "elevator" and "elevator.outputs" in values:
-                lines += _outputs(values["elevator.outputs"], draft.comments)
-        if "elevator.outputs" in values and key.path in ("elevator.output", "elevator.calibration"):
-            continue
         lines += _entry(key, "  " if section else "", draft)
     return "\n".join(lines) + "\n"
-
-
-def _outputs(outputs: Sequence[Mapping[str, Any]], comments: Mapping[str, str]) -> list[str]:
-    lines = _commented(comments.get("elevator.outputs", "Each output with its own calibration."), "  ")
-    return [*lines, "  outputs:", *(f"    - {_inline(output)}" for output in outputs)]
 
 
 def _entry(key: Key, indent: str, draft: Draft) -> list[str]:

@@ -11,14 +11,13 @@ from typing import Any
 
 from pydantic import TypeAdapter
 
-from advisor.aircraft.aircraft import Aircraft, Markers, TableColumns
-from advisor.aircraft.controls import Elevator, Pairs, SideControl
+from advisor.aircraft.aircraft import Aircraft, Elevator, Markers, Pairs, SideControl, TableColumns
 from advisor.aircraft.key import keys_of, sections_of
 from advisor.aircraft.reference import PARAMETERS, SIDE_PARAMETERS, FmuVariables
 from advisor.aircraft_file.estimation import effects_schema, mistakes_in, mistakes_in_estimation
 from advisor.process.settings_file import settings_of, strict
 from advisor.process.yaml_file import read_yaml
-from advisor.words.ascii_output import printable
+from advisor.words.problems import printable
 
 
 def load_aircraft(path: Path | None) -> Aircraft:

@@ -9,20 +9,15 @@ from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
 
-from advisor.aircraft.aircraft import Aircraft, Estimation, TableColumns
-from advisor.aircraft.controls import Elevator
-from advisor.aircraft.sensors import Alpha
+from advisor.aircraft.aircraft import Aircraft, Alpha, Elevator, Estimation, TableColumns
 from advisor.analysis.gap_flights import GapFlights, maneuvers_of, without_refused
-from advisor.campaign.hand_decisions import ByHand
+from advisor.campaign.state import ByHand
 from advisor.flight.instruments.atmosphere import air_flown
-from advisor.flight.maneuvers.events import ManeuverFlown
-from advisor.flight.maneuvers.maneuver import Maneuver
+from advisor.flight.maneuvers.maneuver import Maneuver, ManeuverFlown
 from advisor.flight.stream.stream import FlightStream
 from advisor.gap.inference.prior import FIELD, FieldPrior
+from advisor.mavlink.logs.formats.table import SURFACES, messages_of, quantities_of, read_table, with_outputs
 from advisor.mavlink.logs.kinds import recognised
-from advisor.mavlink.logs.tables.file import read_table
-from advisor.mavlink.logs.tables.messages import SURFACES, messages_of, with_outputs
-from advisor.mavlink.logs.tables.quantities import quantities_of
 from advisor.mavlink.logs.unpack import beginning_of, unpacked
 from advisor.oem.estimate import Estimate, NoEstimate
 from advisor.oem.estimator import estimate_jointly

@@ -5,27 +5,26 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.analysis.log_series import LogSeries
-from advisor.campaign.hand_decisions import NOTHING, ByHand, on_all
+from advisor.analysis.marks_file import LogSeries
+from advisor.campaign.state import NOTHING, ByHand, on_all
 from advisor.decision.axes.requirements import needed, pitch_limits
 from advisor.decision.envelope import changed_speed, incomplete, short_response
 from advisor.decision.first_unit import natural_period
 from advisor.decision.quality import refusals
 from advisor.decision.verdict import Reason
-from advisor.flight.maneuvers.events import (
+from advisor.flight.maneuvers.maneuver import (
     READER_NOTICE,
     FlightEvent,
+    Maneuver,
     ManeuverAgain,
     ManeuverFlown,
     Notice,
     SideManeuverFlown,
 )
-from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.flight.stream.flights import Flights
 from advisor.oem.estimate import NoEstimate
 from advisor.simulators.air import SpeedKind
-from advisor.words.ascii_output import printable
-from advisor.words.problems import UnusableInputError
+from advisor.words.problems import UnusableInputError, printable
 
 _PAUSE_S = 60.0
 """Assumed time between the last manoeuvre of one log and the first of the next, s. No clock measured the

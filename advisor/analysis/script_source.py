@@ -7,14 +7,13 @@ import numpy as np
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft_file.log_facts import LogFacts, facts_of
-from advisor.analysis.log_series import LogSeries
+from advisor.analysis.marks_file import LogSeries
 from advisor.campaign.campaign import Campaign
 from advisor.campaign.state import CampaignState, JudgedManeuver
 from advisor.flight.vehicle.surfaces import Surface
 from advisor.scripts.inputs import CONTROLS, Control
 from advisor.scripts.table import Source
-from advisor.words.ascii_output import printable
-from advisor.words.problems import UnusableInputError
+from advisor.words.problems import UnusableInputError, printable
 
 OF_FILE = "the aircraft file's model"
 _LIMITS = ("MIN", "TRIM", "MAX")
@@ -36,7 +35,7 @@ def source_of_log(log: Path, aircraft: Aircraft, target_system: int | None = Non
     UnusableInputError
         The log cannot be read, holds no aircraft, or is not ArduPilot's.
     """
-    from advisor.mavlink.logs.whole import read_whole_log
+    from advisor.mavlink.logs.logs import read_whole_log
 
     facts = facts_of(read_whole_log(log), aircraft, target_system)
     if facts.vehicle.autopilot != "ardupilot":

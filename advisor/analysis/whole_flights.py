@@ -6,13 +6,12 @@ from pathlib import Path
 from typing import Literal
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.analysis.log_series import LogSeries
+from advisor.analysis.marks_file import LogSeries
 from advisor.campaign.campaign import Campaign
-from advisor.campaign.hand_decisions import NOTHING, ByHand
-from advisor.campaign.state import OF_ELEVATOR, CampaignState
+from advisor.campaign.state import NOTHING, OF_ELEVATOR, ByHand, CampaignState
 from advisor.flight.maneuvers.marks import Mark
 from advisor.flight.signals.messages import Columns
-from advisor.flight.signals.power_on import PowerOn
+from advisor.flight.signals.track import PowerOn
 from advisor.flight.stream.flights import FlightHeard
 from advisor.flight.stream.stream import FlightStream
 from advisor.words.problems import Problem, UnusableInputError

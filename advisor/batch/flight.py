@@ -15,8 +15,7 @@ import numpy as np
 
 from advisor import __version__
 from advisor.aircraft.aircraft import Aircraft
-from advisor.analysis.log_series import began_s
-from advisor.analysis.marks_file import path_beside
+from advisor.analysis.marks_file import began_s, path_beside
 from advisor.mavlink.logs.formats import ENDINGS
 from advisor.oem.estimate import Estimate
 from advisor.process.atomic_file import write_atomically
@@ -199,7 +198,7 @@ _KEPT = ("theta", "covariance_cr", "covariance")
 def analyze(task: BatchTask) -> Analyzed:
     """Analyze a log like ``advisor analyze``. An unusable log has a result too."""
     from advisor.analysis.gap import as_in_tables
-    from advisor.analysis.log_series import LogSeries
+    from advisor.analysis.marks_file import LogSeries
     from advisor.analysis.whole_flights import left_out_of
     from advisor.campaign.campaign import Campaign
 

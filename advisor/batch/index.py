@@ -13,7 +13,7 @@ from urllib.parse import quote
 
 from advisor import __version__
 from advisor.aircraft.reference import PARAMETERS
-from advisor.analysis.log_series import SINCE_1970_S
+from advisor.analysis.marks_file import SINCE_1970_S
 from advisor.batch.flight import Analyzed
 from advisor.batch.tables import (
     ChangeOverFlights,
@@ -26,11 +26,9 @@ from advisor.batch.tables import (
 )
 from advisor.decision.pooling import DERIVATIVES, common_airspeed, posteriors_at_one_speed
 from advisor.oem.estimate import Estimate
-from advisor.words.ascii_output import printable
-from advisor.words.digits import signed, with_half
-from advisor.words.quantiles import NORMAL_95
+from advisor.words.problems import printable
+from advisor.words.quantities import NORMAL_95, signed, symbol, with_half
 from advisor.words.quantities import PARAMETERS as QUANTITIES
-from advisor.words.quantities import symbol
 
 WIDTH, HEIGHT = 320, 182
 _LEFT, _RIGHT, _TOP, _BOTTOM = 56, 312, 24, 144

@@ -11,7 +11,7 @@ import numpy as np
 
 from advisor import __version__
 from advisor.aircraft.reference import PARAMETERS
-from advisor.analysis.log_series import SINCE_1970_S
+from advisor.analysis.marks_file import SINCE_1970_S
 from advisor.batch.flight import Analyzed
 from advisor.decision.change import Change, find_change
 from advisor.decision.history import CandidateManeuver
@@ -19,9 +19,7 @@ from advisor.decision.pooling import DERIVATIVES, posteriors_at_one_speed
 from advisor.exports.flights.findings import PARAMETER_UNITS, SIDE_UNITS
 from advisor.exports.flights.table import Column, Dataset, FlightTable, counts, numbers, texts, truths
 from advisor.oem.estimate import Estimate
-from advisor.words.digits import with_half
-from advisor.words.quantiles import NORMAL_95
-from advisor.words.quantities import symbol
+from advisor.words.quantities import NORMAL_95, symbol, with_half
 
 
 @dataclass(frozen=True, slots=True)

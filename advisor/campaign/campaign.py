@@ -6,45 +6,42 @@ from functools import partial
 from typing import Any
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.campaign.axes.elevator_campaign import ElevatorCampaign
-from advisor.campaign.axes.lateral_campaign import LateralCampaign
-from advisor.campaign.axis_campaign import AxisCampaign
-from advisor.campaign.being_flown import Axes, BeingFlown, InputEnough
+from advisor.campaign.axis_campaign import AxisCampaign, ElevatorCampaign, LateralCampaign
 from advisor.campaign.engineer import OF, Engineer
-from advisor.campaign.hand_decisions import NOTHING, ByHand
-from advisor.campaign.instruments import side_signs, together, with_fit
 from advisor.campaign.journal import Journal
+from advisor.campaign.single_maneuver import Axes, BeingFlown, InputEnough, side_signs, together, with_fit
 from advisor.campaign.state import (
+    NOTHING,
     OF_ELEVATOR,
     AxisState,
+    ByHand,
     CampaignState,
     JudgedManeuver,
     WholeFlights,
     has_begun,
 )
-from advisor.decision.crew_plan import CrewPlan, crew_plan
-from advisor.decision.verdict import FlightTestVerdict
-from advisor.flight.maneuvers.events import (
+from advisor.decision.verdict import CrewPlan, FlightTestVerdict, crew_plan
+from advisor.flight.maneuvers.maneuver import (
     Activity,
     FlightEvent,
+    Maneuver,
     ManeuverAgain,
     ManeuverFlown,
     ModeChanged,
     Notice,
     SideManeuverFlown,
 )
-from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.flight.maneuvers.marks import Mark
-from advisor.flight.signals.instrument_finding import InstrumentFinding
 from advisor.flight.signals.messages import Columns
+from advisor.flight.signals.trust import InstrumentFinding
 from advisor.flight.stream.flights import Flights
 from advisor.flight.stream.stream import FlightStream
 from advisor.oem.estimate import Estimate, NoEstimate
 from advisor.process.aside import Aside
 from advisor.process.parts import Parts
 from advisor.words.axes import AxisName
-from advisor.words.digits import clock
 from advisor.words.problems import Problem
+from advisor.words.quantities import clock
 
 _TEST_OF: Mapping[AxisName, str] = {"pitch": "", "lateral": "roll and yaw: "}
 """Words before the decision on a test, by the name of its axis."""

@@ -5,12 +5,12 @@ from collections.abc import Mapping
 from dataclasses import replace
 
 from advisor.campaign.axis_campaign import AxisCampaign
-from advisor.campaign.hand_decisions import ByHand, HandDecision, Remark
 from advisor.campaign.journal import Journal
-from advisor.flight.maneuvers.events import Notice
+from advisor.campaign.state import ByHand, HandDecision, Remark
+from advisor.flight.maneuvers.maneuver import Notice
 from advisor.flight.stream.flights import Flights
 from advisor.words.axes import AxisName
-from advisor.words.digits import clock
+from advisor.words.quantities import clock
 
 OF: Mapping[AxisName, str] = {"pitch": "", "lateral": "roll and yaw, "}
 """Words before the number of a manoeuvre, by the name of its axis."""

@@ -3,7 +3,7 @@
 from collections import deque
 from math import inf, isfinite, nan
 
-from advisor.flight.maneuvers.events import (
+from advisor.flight.maneuvers.maneuver import (
     READER_NOTICE,
     DataAgain,
     FlightBegan,
@@ -17,7 +17,7 @@ from advisor.flight.maneuvers.events import (
 )
 from advisor.flight.maneuvers.marks import MARK_NOTICES
 from advisor.flight.vehicle.vehicle import Vehicle
-from advisor.words.digits import CLOCK, clock
+from advisor.words.quantities import CLOCK, clock
 
 KEPT = 1000
 """Largest number of sentences in the event log, 0.1 kB each: enough for some hundred manoeuvres."""

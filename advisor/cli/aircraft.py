@@ -13,12 +13,11 @@ import click
 from advisor.aircraft.aircraft import Aircraft
 from advisor.cli.options import json_option, read_aircraft, refuse_unwritable, target_system_option
 from advisor.process.first_run import compile_once
-from advisor.words.ascii_output import printable
-from advisor.words.problems import ConfigurationError
+from advisor.words.problems import ConfigurationError, printable
 
 if TYPE_CHECKING:
-    from advisor.aircraft_file.lacks import Lack
-    from advisor.aircraft_file.log_facts import LogFacts
+    from advisor.aircraft_file.log_facts import Lack, LogFacts
+
 
 SCHEMA = "advisor.aircraft/1"
 
@@ -37,7 +36,7 @@ def command() -> None:
 
 @command.command
 @click.option(
-    "--from", "log", type=click.Path(path_type=Path), metavar="LOG", help="Log that answers the questions."
+    "--from", "log", type=click.Path(path_type=Path), metavar="LOG", help="Log whose facts the file takes."
 )
 @click.option(
     "-o",
@@ -47,11 +46,11 @@ def command() -> None:
     show_default=True,
     help="File to write.",
 )
-@click.option("--blank", is_flag=True, help="Ask nothing, and write every key as a comment with its meaning.")
+@click.option("--blank", is_flag=True, help="Write every key as a comment, as without --from.")
 @click.option("--force", is_flag=True, help="Replace a file that exists.")
 @target_system_option
 def new(log: Path | None, out: Path, blank: bool, force: bool, target_system: int | None) -> None:
-    """Write a commented aircraft file, from answers on the terminal or from a log.
+    """Write a commented aircraft file, blank or from a log.
 
     A log gives the outputs with their functions and limits, the air speed, the pressure, and the source of
     the angle of attack. An unknown key becomes a comment that states the cost of its absence.
@@ -63,8 +62,7 @@ def new(log: Path | None, out: Path, blank: bool, force: bool, target_system: in
     """
     from advisor.aircraft_file.proposal import Draft, aircraft_text, proposed
     from advisor.aircraft_file.read import load_aircraft
-    from advisor.cli.asking import ask
-    from advisor.doctor.next_steps import USUAL_LINK
+    from advisor.doctor.examination import USUAL_LINK
     from advisor.process.atomic_file import write_atomically
 
     if blank and log is not None:
@@ -74,7 +72,7 @@ def new(log: Path | None, out: Path, blank: bool, force: bool, target_system: in
         raise ConfigurationError(f"-o: {out} exists; name another file, or add --force to replace this one.")
     if log is None:
         head = ["Aircraft file of the inflight advisor. Remove the # in front of a key that you know."]
-        draft = Draft(head=head, values={} if blank else ask())
+        draft = Draft(head=head, values={})
     else:
         draft = proposed(_facts(log, Aircraft(), target_system), printable(log.name))
         draft.values.setdefault("name", printable(log.stem))
@@ -108,7 +106,7 @@ def check(file: Path, log: Path | None, target_system: int | None, as_json: bool
       advisor aircraft check my-aircraft.yaml
       advisor aircraft check my-aircraft.yaml --log flight.tlog --json
     """
-    from advisor.aircraft_file.lacks import known_keys, lacks_of
+    from advisor.aircraft_file.log_facts import known_keys, lacks_of
 
     aircraft = read_aircraft(file)
     facts = _facts(log, aircraft, target_system) if log else None
@@ -154,7 +152,7 @@ def _list(title: str, lacks: "list[Lack]") -> None:
 
 def _contradicted(log: Path, aircraft: Aircraft, target_system: int | None) -> "list[Lack]":
     """Return the keys that the log's manoeuvres contradict, as in ``advisor analyze``."""
-    from advisor.aircraft_file.lacks import contradicted
+    from advisor.aircraft_file.log_facts import contradicted
     from advisor.analysis.whole_flights import read_whole
     from advisor.words.problems import UnusableInputError
 
@@ -167,7 +165,7 @@ def _contradicted(log: Path, aircraft: Aircraft, target_system: int | None) -> "
 
 def _facts(log: Path, aircraft: Aircraft, target_system: int | None) -> "LogFacts":
     from advisor.aircraft_file.log_facts import facts_of
-    from advisor.mavlink.logs.whole import read_whole_log
+    from advisor.mavlink.logs.logs import read_whole_log
 
     compile_once(partial(click.echo, err=True))
     return facts_of(read_whole_log(log, columns=aircraft.columns), aircraft, target_system)

@@ -7,18 +7,16 @@ from typing import TYPE_CHECKING
 
 import click
 
-from advisor.campaign.hand_decisions import NOTHING
+from advisor.campaign.state import NOTHING
 from advisor.cli.doctor import examine_log
 from advisor.cli.improvement_export import export_option, orders_of, write_exports
-from advisor.cli.log_options import LogsAsked, log_options
-from advisor.cli.options import UNUSABLE, USAGE, json_option
+from advisor.cli.options import UNUSABLE, USAGE, LogsAsked, json_option, log_options
 from advisor.cli.running import Stages
-from advisor.words.ascii_output import printable
-from advisor.words.problems import Problem
+from advisor.words.problems import Problem, printable
 
 if TYPE_CHECKING:
     from advisor.aircraft.aircraft import Aircraft
-    from advisor.analysis.log_series import LogSeries
+    from advisor.analysis.marks_file import LogSeries
     from advisor.analysis.whole_flights import Axis
     from advisor.campaign.campaign import Campaign
     from advisor.campaign.state import CampaignState
@@ -63,7 +61,7 @@ def command(
     """
     aircraft = asked.read_aircraft()
     orders = orders_of(exports, aircraft, asked.inputs, "both")
-    from advisor.analysis.log_series import LogSeries
+    from advisor.analysis.marks_file import LogSeries
     from advisor.analysis.whole_flights import holds_no_test
 
     series = LogSeries(asked.logs, aircraft.columns)
@@ -94,8 +92,7 @@ def command(
         document = analysis_document(state, files, aircraft, left_out, said)
         click.echo(json.dumps(document, allow_nan=False, indent=1))
     elif state is not None and usable:
-        from advisor.report.table import PlainConsole
-        from advisor.report.text import AnalysisText
+        from advisor.report.text import AnalysisText, PlainConsole
 
         shown = AnalysisText(
             state, list(map(printable, series.names)), aircraft, every_movement, pitch=axis != "lateral"
@@ -150,7 +147,7 @@ def print_untested(
 ) -> None:
     """Print the next input of each axis with its drawing, then the telemetry examination of each log."""
     from advisor.doctor.text import ExaminationText
-    from advisor.report.table import PlainConsole
+    from advisor.report.text import PlainConsole
     from advisor.tui.stick_drawing import drawn
 
     tests = [state.flight_test] if axis != "lateral" else []

@@ -11,12 +11,17 @@ from typing import TYPE_CHECKING
 import click
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.cli.log_options import LogsAsked
-from advisor.cli.options import UNUSABLE, aircraft_option, read_aircraft, refuse_unwritable_folder, writing
+from advisor.cli.options import (
+    UNUSABLE,
+    LogsAsked,
+    aircraft_option,
+    read_aircraft,
+    refuse_unwritable_folder,
+    writing,
+)
 from advisor.cli.report import refuse_missing_libraries
 from advisor.cli.running import Progress, runner_of, running_options
-from advisor.words.ascii_output import printable
-from advisor.words.problems import ConfigurationError, Problem, UnusableInputError
+from advisor.words.problems import ConfigurationError, Problem, UnusableInputError, printable
 
 if TYPE_CHECKING:
     from advisor.batch.flight import Analyzed, BatchTask

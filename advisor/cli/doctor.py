@@ -10,10 +10,8 @@ import click
 from click.shell_completion import CompletionItem
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.cli.log_options import LogsAsked, log_options
-from advisor.cli.options import UNUSABLE, json_option
-from advisor.words.ascii_output import printable
-from advisor.words.problems import Problem, UnusableInputError
+from advisor.cli.options import UNUSABLE, LogsAsked, json_option, log_options
+from advisor.words.problems import Problem, UnusableInputError, printable
 
 if TYPE_CHECKING:
     from advisor.doctor.examination import Examination
@@ -60,7 +58,7 @@ def command(asked: LogsAsked, target: str, seconds: float, request_rates: bool, 
         problem = error.problem
     commands: tuple[str, ...] = ()
     if findings is not None:
-        from advisor.doctor.next_steps import ExaminedInput, next_commands
+        from advisor.doctor.examination import ExaminedInput, next_commands
 
         file = str(asked.aircraft_file) if asked.aircraft_file else None
         has_model = bool(aircraft.model) or aircraft.simulator is not None
@@ -68,12 +66,12 @@ def command(asked: LogsAsked, target: str, seconds: float, request_rates: bool, 
             findings, ExaminedInput(target, _is_log(target), file, asked.target_system, has_model)
         )
     if as_json:
-        from advisor.doctor.document import doctor_document
+        from advisor.doctor.text import doctor_document
 
         click.echo(json.dumps(doctor_document(findings, problem, commands), allow_nan=False, indent=1))
     elif findings is not None:
         from advisor.doctor.text import ExaminationText
-        from advisor.report.table import PlainConsole
+        from advisor.report.text import PlainConsole
 
         PlainConsole(soft_wrap=True).print(ExaminationText(findings, commands))
     sentence = problem or _first_obstacle(findings)
@@ -107,7 +105,7 @@ def examine_log(log: Path, aircraft: Aircraft, target_system: int | None) -> "Ex
     """
     from advisor.analysis.vibration import vibration_of
     from advisor.doctor.examiner import Examiner
-    from advisor.mavlink.logs.whole import read_whole_log
+    from advisor.mavlink.logs.logs import read_whole_log
     from advisor.mavlink.wire.frames import FrameScanner, Received
 
     examiner, scanner = Examiner(aircraft, target_system), FrameScanner()

@@ -7,17 +7,23 @@ from typing import TYPE_CHECKING
 
 import click
 
-from advisor.cli.log_options import LogsAsked, log_options
-from advisor.cli.options import UNMET, UNUSABLE, json_option, refuse_unwritable, writing
+from advisor.cli.options import (
+    UNMET,
+    UNUSABLE,
+    LogsAsked,
+    json_option,
+    log_options,
+    refuse_unwritable,
+    writing,
+)
 from advisor.cli.running import Stages
-from advisor.words.ascii_output import printable
-from advisor.words.problems import ConfigurationError, Problem, UnusableInputError
+from advisor.words.problems import ConfigurationError, Problem, UnusableInputError, printable
 
 if TYPE_CHECKING:
     from advisor.aircraft.aircraft import Aircraft
     from advisor.analysis.whole_flights import WholeFlights
     from advisor.expectations.check import Outcome
-    from advisor.expectations.expected import Expectations
+    from advisor.expectations.read import Expectations
 
 
 @click.command
@@ -140,7 +146,7 @@ def _write(asked: LogsAsked, aircraft: "Aircraft", file: Path) -> int:
 
 
 def _print(outcomes: "list[Outcome]", log: Path) -> None:
-    from advisor.report.table import PlainConsole, Table
+    from advisor.report.text import PlainConsole, Table
 
     if not outcomes:
         return

@@ -4,12 +4,11 @@ from pathlib import Path
 
 import click
 
-from advisor.cli.log_options import LogsAsked, log_options
-from advisor.cli.options import refuse_unwritable_folder
+from advisor.cli.options import LogsAsked, log_options, refuse_unwritable_folder
 from advisor.cli.running import Stages
 from advisor.exports.flights.formats import WRITERS, parse_formats, staged, write_formats
 from advisor.exports.models.names import NAMES
-from advisor.words.ascii_output import printable
+from advisor.words.problems import printable
 
 
 @click.command

@@ -10,10 +10,9 @@ from pathlib import Path
 import click
 
 from advisor.cli.options import NEWEST
-from advisor.mavlink.link.keeping import Keeping
-from advisor.mavlink.link.link_process import LinkProcess, end
-from advisor.mavlink.link.recording_file import default_recording, recordings_folder, writable_folder
-from advisor.mavlink.link.running_links import RunningLink, running_alone
+from advisor.mavlink.link.kept_link import Keeping
+from advisor.mavlink.link.link_process import LinkProcess, RunningLink, end, running_alone
+from advisor.mavlink.link.recorder import default_recording, recordings_folder, writable_folder
 from advisor.session.campaign_file import CampaignFile, read_campaign, write_campaign
 from advisor.words.problems import ConfigurationError
 
@@ -118,7 +117,7 @@ def _left_alone(start: Start) -> RunningLink | None:
 
 
 def _in_order(logs: Sequence[Path]) -> list[Path]:
-    from advisor.analysis.log_series import LogSeries
+    from advisor.analysis.marks_file import LogSeries
 
     return LogSeries(logs).logs
 

@@ -10,8 +10,7 @@ from click.core import ParameterSource
 
 from advisor.cli.gap_asked import refuse_figure
 from advisor.cli.improvement_export import export_option, orders_of
-from advisor.cli.log_options import LogsAsked, log_options
-from advisor.cli.options import decided_on, json_option, refuse_unwritable
+from advisor.cli.options import LogsAsked, decided_on, json_option, log_options, refuse_unwritable
 from advisor.cli.proving import prove_option, refuse_proving
 from advisor.cli.running import Stages
 from advisor.words.problems import ConfigurationError
@@ -19,7 +18,7 @@ from advisor.words.problems import ConfigurationError
 if TYPE_CHECKING:
     from advisor.aircraft.aircraft import Aircraft
     from advisor.analysis.axis_flown import AxisFlown
-    from advisor.campaign.hand_decisions import ByHand
+    from advisor.campaign.state import ByHand
     from advisor.exports.models.formats import AxisAsked
 
 _LATERAL = (
@@ -133,9 +132,7 @@ def command(
     from advisor.cli.gap_asked import GapAsked
 
     gap = GapAsked(asked, aircraft, shares, out, figure, orders, proving, why, as_json)
-    from advisor.cli.axes.axis_gap import AxisGap, answered
-    from advisor.cli.axes.lateral_gap import SideGap
-    from advisor.cli.axes.pitch_gap import PitchGap
+    from advisor.cli.axis_gap import AxisGap, PitchGap, SideGap, answered
 
     asked_for: list[AxisGap[Any]] = []
     if axis != "lateral":

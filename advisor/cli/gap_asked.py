@@ -10,15 +10,13 @@ from typing import Any, TypeVar
 import click
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.cli.log_options import LogsAsked
-from advisor.cli.options import UNUSABLE, refuse_unwritable, writing
+from advisor.cli.options import UNUSABLE, LogsAsked, refuse_unwritable, writing
 from advisor.exports.models.flown import FlownModel, write_file
 from advisor.exports.models.write import ExportOrder
 from advisor.gap.inference.prior import FieldPrior
 from advisor.process.parts import FailedPart, attempt
 from advisor.report.gap_document import gap_document
-from advisor.words.ascii_output import printable
-from advisor.words.problems import ConfigurationError, UnusableInputError
+from advisor.words.problems import ConfigurationError, UnusableInputError, printable
 
 Found = TypeVar("Found")
 
@@ -144,7 +142,7 @@ def write_figure(figure: Path | None, document: Callable[[], Mapping[str, Any]])
     """
     if figure is None:
         return
-    from advisor.report.page.gap_picture import write_gap_picture
+    from advisor.report.page.gap import write_gap_picture
 
     with writing("--figure", figure):
         write_gap_picture(document(), figure)

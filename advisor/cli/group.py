@@ -18,8 +18,7 @@ from advisor.cli.options import INTERNAL, UNUSABLE, USAGE
 from advisor.process.first_run import compile_once
 from advisor.process.interrupt import STOPPED, Interrupted
 from advisor.process.tasks.threads import pin_linear_algebra
-from advisor.words.ascii_output import printable, speak_plainly
-from advisor.words.problems import ConfigurationError, UnusableInputError
+from advisor.words.problems import ConfigurationError, UnusableInputError, printable, speak_plainly
 
 COMMANDS = {
     "demo": "Fly the bundled aircraft through the paper's campaign over a real link, with advice.",

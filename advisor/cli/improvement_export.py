@@ -8,8 +8,7 @@ import click
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.cli.options import refuse_unwritable
-from advisor.words.ascii_output import printable
-from advisor.words.problems import ConfigurationError
+from advisor.words.problems import ConfigurationError, printable
 
 if TYPE_CHECKING:
     from advisor.exports.models.flown import FlownModel

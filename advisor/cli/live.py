@@ -8,19 +8,17 @@ from typing import TYPE_CHECKING
 
 import click
 
-from advisor.cli.log_options import LogsAsked, log_options
-from advisor.cli.options import NEWEST
+from advisor.cli.options import NEWEST, LogsAsked, log_options
 from advisor.cli.screen import Show, advise, headless
 from advisor.process.interrupt import STOPPED, in_order
-from advisor.words.ascii_output import printable
-from advisor.words.problems import ConfigurationError
+from advisor.words.problems import ConfigurationError, printable
 
 if TYPE_CHECKING:
     from advisor.campaign.campaign import ManeuverJudged
-    from advisor.campaign.hand_decisions import ByHand
+    from advisor.campaign.state import ByHand
     from advisor.mavlink.link.announce import Announcer
     from advisor.mavlink.link.kept_link import KeptLink
-    from advisor.session.source import Source
+    from advisor.session.conducting import Source
 
 
 @click.command
@@ -94,11 +92,11 @@ def command(
         raise ConfigurationError(f"{other} and --no-record contradict each other; give one of them.")
     if asked.logs and resume is None:
         raise ConfigurationError(_without_resume(str(asked.logs[0])))
-    from advisor.campaign.hand_decisions import NOTHING
+    from advisor.campaign.state import NOTHING
     from advisor.cli.flight_start import start_of, started
-    from advisor.mavlink.link.connection import parse_connection
-    from advisor.mavlink.link.keeping import Keeping, new_door
-    from advisor.mavlink.wire.signing import read_key
+    from advisor.mavlink.link.kept_link import Keeping, new_door
+    from advisor.mavlink.link.transports import parse_connection
+    from advisor.mavlink.wire.framing import read_key
     from advisor.process.yaml_file import read_yaml
     from advisor.session.campaign_file import CampaignFile
 
@@ -141,7 +139,7 @@ def command(
 
 def _without_resume(given: str) -> str:
     """Return the error for an argument: a connection without its option, or a log without --resume."""
-    from advisor.mavlink.link.connection import parse_connection
+    from advisor.mavlink.link.transports import parse_connection
 
     try:
         parse_connection(given)
@@ -170,22 +168,22 @@ def _ended(recordings: Sequence[Path]) -> str:
 def _decided(flights: Sequence[Path | None]) -> "ByHand":
     """Return the decisions by hand on these flights. Without a recording, nothing is kept."""
     from advisor.analysis.marks_file import read_by_hand
-    from advisor.campaign.hand_decisions import NOTHING, on_all
+    from advisor.campaign.state import NOTHING, on_all
 
     return on_all([read_by_hand(flight) if flight else NOTHING for flight in flights])
 
 
 def _source(earlier: Sequence[Path], link: "KeptLink") -> "Source":
     from advisor.session.live import LinkSource
-    from advisor.session.resumed import ResumedSource
+    from advisor.session.replay import ResumedSource
 
     return ResumedSource(earlier, LinkSource(link)) if earlier else LinkSource(link)
 
 
 def _tell(link: "KeptLink", announce: bool, uplink: bool, event: object) -> None:
     """Announce a verdict to the ground stations, and send the next input to the autopilot's script."""
-    from advisor.campaign.being_flown import InputEnough
     from advisor.campaign.campaign import ManeuverJudged
+    from advisor.campaign.single_maneuver import InputEnough
 
     if uplink and isinstance(event, InputEnough):
         from advisor.scripts.table import end_order

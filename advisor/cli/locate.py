@@ -22,6 +22,6 @@ def command(what: str) -> None:
 
         click.echo(settings_path())
     else:
-        from advisor.mavlink.link.recording_file import recordings_folder
+        from advisor.mavlink.link.recorder import recordings_folder
 
         click.echo(recordings_folder())

@@ -39,8 +39,7 @@ def command(folders: tuple[Path, ...], most_mb: float, limit_s: float) -> None:
     """
     if find_spec("mcp") is None:
         raise ConfigurationError("advisor mcp needs mcp: pip install 'inflight-advisor[mcp]'.")
-    from advisor.assistant.folders import folders_of
-    from advisor.assistant.server import Calls, server_of
+    from advisor.assistant.server import Calls, folders_of, server_of
 
     try:
         server_of(folders_of(folders, round(1e6 * most_mb)), Calls(limit_s)).run("stdio")

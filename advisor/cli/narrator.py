@@ -27,11 +27,9 @@ from advisor.mavlink.link.health import LinkStatistics
 from advisor.mavlink.link.observer import LinkObserver
 from advisor.process.liveness import Beat, Watch
 from advisor.session.behind import BehindTeller, backlog_s
-from advisor.session.child_process import messages_to_parent, pause_s, said_of, send, start_child
-from advisor.session.remote import ConductorTask
-from advisor.session.source import Source
-from advisor.words.ascii_output import speak_plainly
-from advisor.words.problems import UnusableInputError
+from advisor.session.conducting import Source
+from advisor.session.remote import ConductorTask, messages_to_parent, pause_s, said_of, send, start_child
+from advisor.words.problems import UnusableInputError, speak_plainly
 
 if TYPE_CHECKING:
     from advisor.campaign.campaign import Campaign
@@ -153,7 +151,7 @@ def narrate_here(
     UnusableInputError
         The source can never be used, or has ended without a manoeuvre to judge.
     """
-    from advisor.report.follow import follow
+    from advisor.report.text import follow
     from advisor.session.replay import LogPlayer
 
     of_log = isinstance(source, LogPlayer)

@@ -1,13 +1,14 @@
 """Options that several commands share, with one text and one behaviour in all commands."""
 
 import os
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import replace
+from dataclasses import dataclass, replace
+from functools import wraps
 from itertools import combinations
 from math import isfinite, nan
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -15,8 +16,9 @@ from advisor.aircraft.aircraft import Aircraft, Rule
 from advisor.words.problems import ConfigurationError
 
 if TYPE_CHECKING:
-    from advisor.campaign.hand_decisions import ByHand
+    from advisor.campaign.state import ByHand
     from advisor.flight.maneuvers.marks import Mark
+
 
 UNMET, USAGE, UNUSABLE, INTERNAL = 1, 2, 3, 70
 """Exit codes for an expectation that does not hold, wrong usage or configuration, unusable input, and a fault
@@ -167,7 +169,7 @@ def decided_on(log: Path, no_marks: bool) -> "ByHand":
         As :func:`advisor.analysis.marks_file.read_by_hand`.
     """
     from advisor.analysis.marks_file import read_by_hand
-    from advisor.campaign.hand_decisions import NOTHING
+    from advisor.campaign.state import NOTHING
 
     return NOTHING if no_marks else read_by_hand(log)
 
@@ -241,3 +243,110 @@ def writing(option: str, path: Path) -> Iterator[None]:
             f"{option}: {path} cannot be written to: {error.strerror or error}."
             " Make room or name another place."
         ) from None
+
+
+_OPTIONS = {
+    "rule": rule_option, "marks": maneuver_option, "no_marks": no_marks_option, "fixes": fix_option,
+    "terms": term_option,
+}  # fmt: skip
+"""Decorator that adds each option that only some commands have, by the option's name."""
+
+
+@dataclass(frozen=True, slots=True)
+class LogsAsked:
+    """Logs of the command line, and how to read them."""
+
+    logs: tuple[Path, ...] = ()
+    aircraft_file: Path | None = None
+    target_system: int | None = None
+    rule: Rule | None = None
+    """Rule that overrides the aircraft file's."""
+    marks: "tuple[Mark, ...]" = ()
+    no_marks: bool = False
+    """Whether earlier decisions by hand are ignored."""
+    fixes: tuple[str, ...] = ()
+    """Parameters to hold, each ``NAME[=VALUE]``."""
+    terms: tuple[str, ...] = ()
+    """Terms to add, each ``EQUATION:EXPRESSION``."""
+
+    @property
+    def aircraft_text(self) -> str | None:
+        """Aircraft file as given; None without one."""
+        return str(self.aircraft_file) if self.aircraft_file else None
+
+    @property
+    def inputs(self) -> list[Path]:
+        """Every file that the command reads."""
+        return [*self.logs, *([self.aircraft_file] if self.aircraft_file else [])]
+
+    @property
+    def reading(self) -> list[str]:
+        """Options other than the aircraft file that say how to read the logs, as words of a command line."""
+        words = [] if self.target_system is None else ["--target-system", str(self.target_system)]
+        words += ["--no-marks"] if self.no_marks else []
+        for mark in self.marks:
+            sign = "+" if mark.from_log_start else ""
+            words += ["--maneuver", f"{sign}{mark.start_s:.10g}:{sign}{mark.end_s:.10g}"]
+        words += [word for text in self.fixes for word in ("--fix", text)]
+        words += [word for text in self.terms for word in ("--term", text)]
+        return words
+
+    def read_aircraft(self) -> Aircraft:
+        """Read the aircraft file.
+
+        Raises
+        ------
+        ConfigurationError
+            As :func:`advisor.cli.options.read_aircraft`.
+        """
+        aircraft = read_aircraft(self.aircraft_file, self.rule)
+        if self.fixes or self.terms:
+            from advisor.aircraft_file.estimation import structure_of
+
+            structure = structure_of(self.fixes, self.terms, aircraft.estimation, aircraft.model)
+            aircraft = replace(aircraft, estimation=structure)
+        if not self.logs:
+            return aircraft
+        from advisor.analysis.gap import as_in_tables
+
+        return as_in_tables(aircraft, self.logs)
+
+
+def log_options(
+    *names: str, logs: bool = True, required: bool = True
+) -> Callable[[Callable[..., Any]], Callable[..., Any]]:
+    """Add LOG..., ``--aircraft`` and ``--target-system``, which the command receives as one `LogsAsked`.
+
+    Parameters
+    ----------
+    names
+        Further options: ``rule``, ``marks``, ``no_marks``, ``fixes``, ``terms``.
+    logs, required
+        Whether the command has the argument LOG..., and whether at least one log is needed.
+    """
+
+    def add(command: Callable[..., Any]) -> Callable[..., Any]:
+        @wraps(command)
+        def call(
+            logs: tuple[Path, ...] = (),
+            aircraft_file: Path | None = None,
+            target_system: int | None = None,
+            rule: Rule | None = None,
+            marks: "tuple[Mark, ...]" = (),
+            no_marks: bool = False,
+            fixes: tuple[str, ...] = (),
+            terms: tuple[str, ...] = (),
+            **options: Any,
+        ) -> Any:
+            refuse_marks_on_several(marks, logs)
+            asked = LogsAsked(tuple(logs), aircraft_file, target_system, rule, marks, no_marks, fixes, terms)
+            return command(asked, **options)
+
+        for name in reversed(names):
+            call = _OPTIONS[name](call)
+        call = aircraft_option(target_system_option(call))
+        if not logs:
+            return call
+        return click.argument("logs", nargs=-1, required=required, type=click.Path(path_type=Path))(call)
+
+    return add

@@ -7,8 +7,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from advisor.cli.running import Stages
-from advisor.words.ascii_output import printable
-from advisor.words.problems import ConfigurationError, UnusableInputError
+from advisor.words.problems import ConfigurationError, UnusableInputError, printable
 
 if TYPE_CHECKING:
     from advisor.exports.models.proof import Proof

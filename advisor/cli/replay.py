@@ -5,9 +5,9 @@ from math import inf
 
 import click
 
-from advisor.cli.log_options import LogsAsked, log_options
+from advisor.cli.options import LogsAsked, log_options
 from advisor.cli.screen import Show, advise
-from advisor.words.ascii_output import printable
+from advisor.words.problems import printable
 
 
 def _speed(ctx: click.Context, parameter: click.Parameter, text: str) -> float:
@@ -40,10 +40,10 @@ def command(asked: LogsAsked, speed: float, show: Show | None = None) -> None:
       advisor replay flight.tlog --maneuver +12:+24
     """
     aircraft = asked.read_aircraft()
-    from advisor.analysis.log_series import LogSeries
-    from advisor.campaign.hand_decisions import NOTHING
+    from advisor.analysis.marks_file import LogSeries
+    from advisor.campaign.state import NOTHING
+    from advisor.session.conducting import Tempo
     from advisor.session.replay import LogPlayer
-    from advisor.session.source import Tempo
 
     series = LogSeries(asked.logs, aircraft.columns)
     by_hand = NOTHING if asked.no_marks else series.read_by_hand()

@@ -52,7 +52,7 @@ class Stages:
 
 
 if TYPE_CHECKING:
-    from advisor.process.tasks.runner import Runner
+    from advisor.process.tasks.processes import Runner
 
 F = TypeVar("F", bound=Callable[..., Any])
 
@@ -93,8 +93,7 @@ def runner_of(workers: int | None, scheduler: str | None, guarded: bool = True) 
             )
         check_address(scheduler)
         return partial(run_on_cluster, address=scheduler, tell=partial(click.echo, err=True))
-    from advisor.process.tasks.processes import run_in_processes
-    from advisor.process.tasks.runner import run_here
+    from advisor.process.tasks.processes import run_here, run_in_processes
 
     count = workers or os.cpu_count() or 1
     return run_here if count == 1 and not guarded else partial(run_in_processes, workers=count)

@@ -12,18 +12,16 @@ import click
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.process.interrupt import in_order
-from advisor.session.source import Source, Tempo
-from advisor.words.ascii_output import printable
-from advisor.words.problems import UnusableInputError
+from advisor.session.conducting import Source, Tempo
+from advisor.words.problems import UnusableInputError, printable
 
 if TYPE_CHECKING:
     from pathlib import Path
 
     from advisor.campaign.campaign import Campaign
-    from advisor.campaign.hand_decisions import ByHand
-    from advisor.campaign.state import CampaignState
+    from advisor.campaign.state import ByHand, CampaignState
     from advisor.flight.maneuvers.marks import Mark
-    from advisor.mavlink.link.keeping import Door
+    from advisor.mavlink.link.kept_link import Door
     from advisor.session.remote import ConductorTask
 
 Listener = Callable[[object], object]
@@ -87,10 +85,10 @@ def advise(
     UnusableInputError
         The source can never be used, or has ended without a manoeuvre to judge.
     """
-    from advisor.campaign.hand_decisions import NOTHING
+    from advisor.campaign.state import NOTHING
     from advisor.cli.narrator import narrate, narrate_here
+    from advisor.session.conducting import report_before_first
     from advisor.session.remote import ConductorTask
-    from advisor.session.view import report_before_first
 
     before = by_hand or NOTHING
     make_campaign = partial(_campaign, aircraft, target_system, tell, tuple(marks), tuple(names))
@@ -157,7 +155,7 @@ def so_far(state: "CampaignState") -> Iterator[str]:
     nothing.
     """
     from advisor.report.facts.answers import decisions
-    from advisor.report.table import SIDE_ROOM, maneuver_line
+    from advisor.report.text import SIDE_ROOM, maneuver_line
 
     lateral = state.lateral is not None and state.lateral.maneuvers
     yield from map(maneuver_line, state.maneuvers)

@@ -16,8 +16,7 @@ from advisor.cli.options import (
     target_system_option,
     writing,
 )
-from advisor.words.ascii_output import printable
-from advisor.words.problems import ConfigurationError, UnusableInputError
+from advisor.words.problems import ConfigurationError, UnusableInputError, printable
 
 if TYPE_CHECKING:
     from advisor.scripts.table import ScriptTable, Source

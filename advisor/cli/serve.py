@@ -123,7 +123,7 @@ def of_logs(logs: Sequence[Path], **options: Any) -> None:
 
 def _refuse_unreadable(logs: Sequence[Path]) -> None:
     """Refuse the logs before a page opens if none of them can be read."""
-    from advisor.analysis.log_series import LogSeries
+    from advisor.analysis.marks_file import LogSeries
     from advisor.words.problems import UnusableInputError
 
     series = LogSeries(logs)

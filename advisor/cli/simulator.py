@@ -8,8 +8,7 @@ import click
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.cli.options import aircraft_option, json_option, read_aircraft
-from advisor.words.ascii_output import printable
-from advisor.words.problems import ConfigurationError
+from advisor.words.problems import ConfigurationError, printable
 
 
 @click.group
@@ -51,7 +50,7 @@ def check(
       advisor simulator check python:my_simulator:make --aircraft my-aircraft.yaml
     """
     from advisor.analysis.gap import opened_simulator
-    from advisor.report.simulator_check import document, lines
+    from advisor.report.improved import document, lines
     from advisor.simulators.check import check as checked
     from advisor.simulators.protocol import Condition
 

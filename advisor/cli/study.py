@@ -13,9 +13,9 @@ from advisor.cli.running import Progress, runner_of, running_options
 from advisor.words.problems import ConfigurationError
 
 if TYPE_CHECKING:
-    from advisor.bundled.study.flying import NoiseReading
+    from advisor.bundled.study.campaigns import NoiseReading
     from advisor.bundled.study.run import Study, StudyReport
-    from advisor.process.tasks.runner import Runner
+    from advisor.process.tasks.processes import Runner
 
 
 F = TypeVar("F", bound=Callable[..., Any])
@@ -95,7 +95,7 @@ def fly(study: "Study[Any, Any]", run: "Runner") -> "StudyReport":
     ConfigurationError
         A process ended every time.
     """
-    from advisor.process.tasks.runner import results_in_order
+    from advisor.process.tasks.processes import results_in_order
 
     progress = Progress(sum(task.campaigns for task in study.tasks), "campaigns")
     try:

@@ -7,16 +7,23 @@ import numpy as np
 
 from advisor.aircraft.aircraft import Aircraft, CampaignPlan
 from advisor.aircraft.reference import PARAMETERS
-from advisor.decision.conditions import Conditions, find_conditions, travel_of
-from advisor.decision.course import CriterionCourse
+from advisor.decision.conditions import (
+    Conditions,
+    by_information,
+    by_scatter,
+    errors_as_flown,
+    find_conditions,
+    odds_of,
+    share_after,
+    travel_of,
+)
 from advisor.decision.first_unit import first_unit_s
-from advisor.decision.foresight import expect
 from advisor.decision.history import CandidateManeuver, is_named, usable_ones
-from advisor.decision.information import Knowledge
+from advisor.decision.information import CriterionCourse, Knowledge
 from advisor.decision.inputs import ORDERS, StepInput, units_to_try
 from advisor.decision.judge import accepted_estimates
 from advisor.decision.paper_rules import scattered_most, window
-from advisor.decision.remaining import by_information, by_scatter, errors_as_flown, odds_of, share_after
+from advisor.decision.prediction import expect
 from advisor.decision.verdict import NO_CURE_BY_INPUT, NextInput, Remaining
 from advisor.model.short_period import ShortPeriod
 from advisor.process.arrays import FloatArray

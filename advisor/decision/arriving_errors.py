@@ -13,8 +13,8 @@ from math import inf
 import numpy as np
 
 from advisor.decision.arriving import Arriving
+from advisor.decision.axes.influences import PITCH, SIDE, Motion, sensitivities
 from advisor.decision.axes.lateral_stop import JUDGED
-from advisor.decision.axes.linear_motion import PITCH, SIDE, Motion, sensitivities
 from advisor.decision.envelope import moved_controls
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.oem.axis.estimate import AxisEstimate

@@ -13,15 +13,15 @@ from scipy.special import chdtri
 
 from advisor.aircraft.aircraft import CampaignPlan
 from advisor.aircraft.reference import SIDE_PARAMETERS, SPEED_EXPONENTS
-from advisor.decision.consistency import USUAL, outliers
 from advisor.decision.history import CandidateManeuver
-from advisor.decision.inverses import information_of
+from advisor.decision.information import USUAL, outliers
 from advisor.decision.pooling import (
     Pooled,
     Posterior,
     Shared,
     derivatives_of,
     disagreement,
+    information_of,
     pooled,
     pooled_on_both_sides,
     posteriors_at_one_speed,

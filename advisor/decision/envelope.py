@@ -11,7 +11,7 @@ import numpy as np
 from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft.standard_gravity import GRAVITY_M_S2
 from advisor.decision.verdict import Reason
-from advisor.flight.maneuvers.hand_flying import OTHER_CONTROLS_DEG, THROTTLE_PERCENT
+from advisor.flight.maneuvers.excitation import OTHER_CONTROLS_DEG, THROTTLE_PERCENT
 from advisor.flight.maneuvers.maneuver import Maneuver, Span
 from advisor.flight.maneuvers.steady_speed import LEFT, speed_before
 from advisor.flight.signals.record import Channel
@@ -19,8 +19,7 @@ from advisor.flight.signals.trust import distrusted
 from advisor.oem.airspeed import LARGEST_DISAGREEMENT, LONGEST_LAG_S, airspeed
 from advisor.oem.axis.problem import LEAST_PART
 from advisor.process.arrays import FloatArray
-from advisor.words.digits import clock, distinct_texts
-from advisor.words.quantiles import NORMAL_95
+from advisor.words.quantities import NORMAL_95, clock, distinct_texts
 
 FASTEST_CHANGE_M_S2 = 2.0 * GRAVITY_M_S2
 """Largest rate of change of the air speed in flight, m/s². The value is gravity along the path, and a drag as

@@ -17,7 +17,7 @@ from advisor.model.axes.lateral import Trim, modes_of, state_matrix
 from advisor.model.short_period import ShortPeriod
 from advisor.oem.axis.estimate import AxisEstimate
 from advisor.oem.estimate import Estimate, NoEstimate
-from advisor.words.quantiles import NORMAL_95
+from advisor.words.quantities import NORMAL_95
 
 _SHORTEST_S, _LONGEST_S = 0.1, 3.0
 """Shortest and longest time unit, s, that is matched to an aircraft."""

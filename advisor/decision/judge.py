@@ -4,13 +4,13 @@ from collections.abc import Container, Mapping, Sequence
 from math import degrees, floor
 
 from advisor.aircraft.aircraft import CampaignPlan, Rule
-from advisor.decision.consistency import USUAL, Outlier, outliers
 from advisor.decision.history import CandidateManeuver, has_begun
+from advisor.decision.information import USUAL, Outlier, outliers
 from advisor.decision.paper_rules import MANEUVER_RULES
 from advisor.decision.pooling import posteriors_at_one_speed
 from advisor.decision.verdict import NO_TEST, ManeuverVerdict, Reason, RuleResult, with_one_remedy
 from advisor.oem.estimate import Estimate, NoEstimate
-from advisor.words.digits import distinct_texts
+from advisor.words.quantities import distinct_texts
 
 COLOURED = 0.5
 """Lag-1 correlation of a residual above which moving air or a model error is assumed."""

@@ -29,10 +29,9 @@ from advisor.decision.response import Response, explained_share, half_range
 from advisor.decision.verdict import NO_CURE_BY_INPUT, UNTRUSTED, Reason
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.flight.maneuvers.purpose import LEAST_PITCH_RATE_DEG_S
-from advisor.flight.signals.instrument_finding import InstrumentFinding
+from advisor.flight.signals.trust import InstrumentFinding
 from advisor.oem.estimate import ChannelFit, Estimate, NoEstimate
-from advisor.words.digits import distinct_texts
-from advisor.words.quantiles import NORMAL_95
+from advisor.words.quantities import NORMAL_95, distinct_texts
 
 WIDEST_PREDICTION_PERCENT = 25.0
 """Largest half-width of the predicted rate's 95 % band, % of its peak. A standard deviation of 12 % in M_δe

@@ -6,26 +6,28 @@ import numpy as np
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft_file.log_facts import FLYING_SHARE, SLOWEST_M_S
-from advisor.campaign.instruments import together
+from advisor.campaign.single_maneuver import together
 from advisor.decision.first_unit import frequency
 from advisor.doctor.examination import AlphaFound, ElevatorFound, Examination, Limit, in_order
 from advisor.doctor.expectation import Assumed, assumed_of, at_log_rates, expect
 from advisor.doctor.limits import (
+    Paced,
     alpha_limits,
     clock_limits,
     clock_notes,
     company_limits,
+    cost_of_missing,
     distrust_limits,
     elevator_limits,
     loss_limits,
     path_limits,
+    rate_limits,
     repeat_limits,
     sender_limits,
+    steadiness_limits,
 )
-from advisor.doctor.pace import Paced, cost_of_missing, rate_limits, steadiness_limits
 from advisor.doctor.survey import Arrival, Survey, bank_name
-from advisor.flight.maneuvers.events import READER_NOTICE, ManeuverFlown, Notice
-from advisor.flight.maneuvers.maneuver import Maneuver
+from advisor.flight.maneuvers.maneuver import READER_NOTICE, Maneuver, ManeuverFlown, Notice
 from advisor.flight.signals.messages import Columns
 from advisor.flight.signals.track import ChannelStatus
 from advisor.flight.stream.stream import FlightStream

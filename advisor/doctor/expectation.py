@@ -21,7 +21,7 @@ from advisor.aircraft.reference import PARAMETERS
 from advisor.campaign.joint_estimate import NEWEST
 from advisor.decision.envelope import flown as flown_values
 from advisor.decision.first_unit import frequency, matched_unit_s
-from advisor.decision.foresight import foresee, local_at_trim, response_from_trim, shared_of, unmeasured
+from advisor.decision.prediction import foresee, local_at_trim, response_from_trim, shared_of, unmeasured
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.model.outputs import OUTPUTS
 from advisor.model.short_period import ShortPeriod

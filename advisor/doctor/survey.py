@@ -6,13 +6,12 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from advisor.flight.signals.attitude import Attitudes
 from advisor.flight.signals.channels import stamps
-from advisor.flight.signals.clocks import BootClock
+from advisor.flight.signals.clocks import Attitudes, BootClock
 from advisor.flight.signals.messages import Columns, cut
 from advisor.flight.vehicle.vehicle import Vehicle
 from advisor.process.arrays import FloatArray
-from advisor.words.digits import stretch
+from advisor.words.quantities import stretch
 
 # The field whose change shows that a message brings a new value.
 _TELLING = {

@@ -10,14 +10,12 @@ from xml.etree.ElementTree import Element, SubElement, indent, tostring
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft.reference import SPEED_EXPONENTS
-from advisor.expectations.expected import MODES, Expectations, Near, mode_of
 from advisor.expectations.flown import Flown, Measured
+from advisor.expectations.read import MODES, Expectations, Near, mode_of
 from advisor.words.axes import AxisName
-from advisor.words.digits import decimals_for, signed, with_half
 from advisor.words.plain import picked, plain
 from advisor.words.problems import Problem
-from advisor.words.quantiles import NORMAL_95
-from advisor.words.quantities import PARAMETERS, SIDE_PARAMETERS
+from advisor.words.quantities import NORMAL_95, PARAMETERS, SIDE_PARAMETERS, decimals_for, signed, with_half
 
 UNITS = {**{name: quantity.unit for name, quantity in {**PARAMETERS, **SIDE_PARAMETERS}.items()}, **MODES}
 UNITS |= {"Z_0": "rad/s", "M_0": "rad/s²"}

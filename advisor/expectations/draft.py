@@ -8,8 +8,8 @@ from scipy.special import ndtri
 
 from advisor.expectations.check import UNITS
 from advisor.expectations.flown import Flown, Measured
-from advisor.words.ascii_output import printable
-from advisor.words.digits import decimals_for
+from advisor.words.problems import printable
+from advisor.words.quantities import decimals_for
 
 _ALL_HOLD = 0.95
 """Probability with which every number of a second flight of the same aircraft lies within its tolerance."""

@@ -6,14 +6,14 @@ from math import nan
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft.reference import PARAMETERS, SIDE_PARAMETERS
-from advisor.analysis.axes.side_comparison import compare_side_flown
+from advisor.analysis.axis_flown import compare_side_flown
 from advisor.analysis.gap import compare_logs
 from advisor.analysis.whole_flights import WholeFlights
 from advisor.campaign.state import CampaignState
 from advisor.decision.axes.lateral_requirements import GROUPS
 from advisor.decision.verdict import FlightTestVerdict
-from advisor.expectations.expected import MODES
-from advisor.flight.signals.true_airspeed import true_over_read
+from advisor.expectations.read import MODES
+from advisor.flight.signals.track import true_over_read
 from advisor.model.axes.lateral import Trim
 from advisor.model.mil_f_8785c import LevelFound
 from advisor.oem.estimate import Estimate

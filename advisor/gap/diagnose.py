@@ -17,15 +17,13 @@ from advisor.gap.inference.prior_speed import prior_speed
 from advisor.gap.records.prepare import prepare
 from advisor.gap.result import Cause, Diagnosis, spelled
 from advisor.gap.search.baseline import at_another_speed, fit_baseline, of_this_flight
-from advisor.gap.uncatalogued.airspeed_scale import airspeed_scale_of, true_over_read
-from advisor.gap.uncatalogued.weight_check import weight_reading
+from advisor.gap.uncatalogued.weight_check import airspeed_scale_of, true_over_read, weight_reading
 from advisor.gap.verdict.answer import answer_of
 from advisor.gap.verdict.notes import left_out
 from advisor.gap.verdict.one_maneuver import answer_of_one
 from advisor.gap.verdict.text import answers_of
 from advisor.words.certainty import as_sure
-from advisor.words.digits import decimals_for, with_half
-from advisor.words.quantiles import NORMAL_95
+from advisor.words.quantities import NORMAL_95, decimals_for, with_half
 
 
 @dataclass(frozen=True)

@@ -11,7 +11,7 @@ from advisor.gap.alternative import Weighed
 from advisor.oem.estimate import Estimate
 from advisor.process.arrays import FloatArray
 from advisor.words.axes import AXES, AxisName
-from advisor.words.quantiles import NORMAL_95
+from advisor.words.quantities import NORMAL_95
 
 GapVerdict = Literal["none", "parameters", "effect", "unknown", "untested"]
 """Verdict of a diagnosis. ``untested`` means that no simulator was given and no effect was found; JSON writes

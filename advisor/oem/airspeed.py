@@ -14,8 +14,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from advisor.flight.signals.derived_alpha import SLOWEST_FLIGHT_M_S
-from advisor.flight.signals.motion import integrated, speed_rate_at
+from advisor.flight.signals.derived_alpha import SLOWEST_FLIGHT_M_S, integrated, speed_rate_at
 from advisor.flight.signals.record import Channel
 from advisor.oem.rows import Signal
 from advisor.process.arrays import FloatArray

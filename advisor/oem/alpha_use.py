@@ -12,8 +12,7 @@ import numpy as np
 from advisor.aircraft.aircraft import Aircraft
 from advisor.flight.instruments.kinematics import check_alpha, combine
 from advisor.flight.maneuvers.maneuver import Maneuver
-from advisor.flight.signals.derived_alpha import DERIVED_ALPHA
-from advisor.flight.signals.inferred_alpha import NEEDED, inferred_alpha
+from advisor.flight.signals.derived_alpha import DERIVED_ALPHA, NEEDED, inferred_alpha
 from advisor.flight.signals.record import Channel
 
 FEWEST_SAMPLES = 20

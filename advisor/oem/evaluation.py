@@ -103,7 +103,7 @@ def errors_of(
         Shape (N,): outputs of the model. None if the rows are innovations, in which common dynamics do not
         stand out.
     prior_share
-        Factor on the standard deviation of ``prior`` in a white-noise fit, as in ``extra.Prior``. None if the
+        Factor on the standard deviation of ``prior`` in a white-noise fit, as in ``rows.Prior``. None if the
         prior has no error.
     kept
         Number of the first extra parameters that get errors; by default all.

@@ -21,8 +21,7 @@ from advisor.aircraft.standard_gravity import GRAVITY_M_S2
 from advisor.flight.instruments.atmosphere import AirData
 from advisor.model.mil_f_8785c import CATEGORIES, LIMITS, LevelFound, assess
 from advisor.oem.estimate import Estimate
-from advisor.words.quantiles import NORMAL_95
-from advisor.words.quantities import symbol
+from advisor.words.quantities import NORMAL_95, symbol
 
 UNITS: Mapping[str, str] = {
     "natural_frequency": "rad/s",

@@ -12,6 +12,12 @@ the knowledge before the flight:
   a prior with a width. If the data contradict a stated lag of zero slightly, its prior is as wide as their
   distance from zero. If data and statement exclude each other, the data decide alone, and the contradiction
   is reported.
+
+A lost output sample costs only its own information. A lost input sample costs far more, because every later
+output is simulated wrongly. With a straight line across the gap, a step lies up to an interval from its true
+place. The outputs determine the true place of the step. Missing samples across a change of the command become
+parameters, bounded by their neighbours. Gauss-Newton estimates the missing samples together with the
+aircraft.
 """
 
 from collections.abc import Sequence
@@ -24,8 +30,9 @@ from advisor.aircraft.reference import PARAMETERS
 from advisor.model.outputs import N_PARAMETERS, SHARED
 from advisor.model.response import respond
 from advisor.model.short_period import NAMES
+from advisor.oem.covariance import Weighing
 from advisor.oem.descent import Fit, Response, descended
-from advisor.oem.driven_motion.linear import Linear
+from advisor.oem.driven_motion.setting import Linear
 from advisor.oem.estimate import InstrumentEstimate, NoEstimate
 from advisor.oem.evaluation import share_of
 from advisor.oem.extra import Prior, penalty
@@ -36,7 +43,6 @@ from advisor.oem.problem import ASSUMED_M_S, Assembly, OutputErrorProblem, assem
 from advisor.oem.profile import ALIKE_NATS, Posterior, profiled
 from advisor.oem.short_period_motion import short_period_motion
 from advisor.oem.solution import Solution, evaluate, spread_of
-from advisor.oem.weighing import Weighing
 from advisor.process.arrays import FloatArray
 
 N = len(PARAMETERS)
@@ -45,7 +51,7 @@ LOOK = 4
 as much as what is left."""
 MODEL_ERROR = 1e-3
 """Numerical: error of the model's outputs, relative to their spread. A surface with a lag is taken as linear
-between the grid's stamps (``surface``)."""
+between the grid's stamps (``rows``)."""
 SAME_SENSOR_S = 0.002
 """Standard deviation of the delay between specific force and pitch rate, s, which one sensor measures. The
 stamps of two messages are rounded to 1 ms. The messages leave the autopilot's loop up to some milliseconds

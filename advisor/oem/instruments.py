@@ -21,14 +21,14 @@ import numpy as np
 
 from advisor.aircraft.added_term import parse_term
 from advisor.aircraft.aircraft import Aircraft
-from advisor.flight.instruments.lateness import lateness_std
+from advisor.flight.instruments.delayed_fit import lateness_std
 from advisor.oem.estimate import InstrumentEstimate
 from advisor.oem.extra import Extra, Prior
 from advisor.oem.instrument_columns import instrument_columns
 from advisor.oem.known_instruments import FoundInstruments, InstrumentName, found_of
 from advisor.oem.problem import Assembly, OutputErrorProblem
 from advisor.process.arrays import FloatArray
-from advisor.words.quantiles import NORMAL_95
+from advisor.words.quantities import NORMAL_95
 
 KNOWN_TO = 0.1
 """Relative standard deviation at which a value is known, and of a servo's lag in an aircraft file. An error

@@ -13,10 +13,10 @@ import numpy as np
 from scipy.special import chdtri
 
 from advisor.oem.colour import Colour
+from advisor.oem.covariance import Weighing
 from advisor.oem.extra import Extra
 from advisor.oem.rows import Laid
 from advisor.oem.scatter_between import CHANCE
-from advisor.oem.weighing import Weighing
 from advisor.process.arrays import FloatArray
 
 WIDTH_S, WEIGHTS = 0.2, 8

@@ -14,7 +14,7 @@ from advisor.oem.evaluation import Evaluated
 from advisor.oem.gauss_newton import Optimum
 from advisor.oem.rows import Laid
 from advisor.process.arrays import FloatArray
-from advisor.words.quantiles import NORMAL_95
+from advisor.words.quantities import NORMAL_95
 
 
 def prediction_band(assembly: Laid, solution: Evaluated, covariance: FloatArray) -> Mapping[str, float]:

@@ -10,11 +10,10 @@ from advisor.aircraft.reference import PARAMETERS
 from advisor.aircraft.standard_gravity import GRAVITY_M_S2
 from advisor.flight.instruments.atmosphere import AirData
 from advisor.flight.maneuvers.maneuver import Maneuver
-from advisor.flight.maneuvers.sines import command_of
-from advisor.flight.signals.motion import channel_at, gravity_in_plane
-from advisor.flight.signals.record import Channel
-from advisor.flight.signals.renewal import renewed
-from advisor.flight.signals.true_airspeed import SEA_LEVEL_DENSITY_KG_M3, true_over_read
+from advisor.flight.maneuvers.stepped_input import command_of
+from advisor.flight.signals.derived_alpha import channel_at, gravity_in_plane
+from advisor.flight.signals.record import Channel, renewed
+from advisor.flight.signals.track import SEA_LEVEL_DENSITY_KG_M3, true_over_read
 from advisor.oem.airspeed import Airspeed, airspeed
 from advisor.oem.alpha_use import FEWEST_SAMPLES, can_do_without, infer, lacking, why_left_out
 from advisor.oem.alpha_use import has as _has

@@ -21,7 +21,7 @@ from scipy.special import expit
 from advisor.oem.extra import penalty
 from advisor.oem.solution import Solution, reported
 from advisor.process.arrays import FloatArray
-from advisor.words.quantiles import NORMAL_95
+from advisor.words.quantities import NORMAL_95
 
 FARTHEST_NATS = 4.0
 """Numerical: fall of the log posterior density at which the walk along the parameter ends. A Gaussian holds

@@ -7,7 +7,7 @@
 
 import numpy as np
 
-from advisor.oem.driven_motion.linear import Linear
+from advisor.oem.driven_motion.setting import Linear
 from advisor.process.arrays import FloatArray
 
 

@@ -12,7 +12,7 @@ manoeuvres; constants and initial states belong to single manoeuvres.
 
 import numpy as np
 
-from advisor.flight.signals.motion import integrated
+from advisor.flight.signals.derived_alpha import integrated
 from advisor.model.outputs import N_LOCAL, N_SHARED
 from advisor.oem.problem import OutputErrorProblem, Record
 from advisor.oem.regression import Equations, regressed

@@ -13,8 +13,7 @@ import numpy as np
 from advisor.model.outputs import OUTPUTS
 from advisor.oem.driven_motion.kalman_filter import filtered_by_each, steps_of
 from advisor.oem.driven_motion.likeliest_noise import COARSE, FINE, likeliest
-from advisor.oem.driven_motion.linear import Linear
-from advisor.oem.driven_motion.noise import GUST, GUST_MEMORY, MEMORY, Noise
+from advisor.oem.driven_motion.setting import GUST, GUST_MEMORY, MEMORY, Linear, Noise
 from advisor.process.arrays import FloatArray, IntArray
 
 ALPHA, A_Z = OUTPUTS.index("alpha"), OUTPUTS.index("a_z")

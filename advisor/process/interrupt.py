@@ -135,7 +135,7 @@ def _write_unless_interrupted(lost: "sys.UnraisableHookArgs") -> None:
 
 
 def _say_and_exit(sentence: str, code: int) -> None:
-    from advisor.words.ascii_output import plain
+    from advisor.words.problems import plain
 
     with suppress(OSError):
         # On a terminal a progress bar may stand in this line and may have hidden the cursor.

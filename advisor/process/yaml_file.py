@@ -7,8 +7,7 @@ from typing import Any
 
 import yaml
 
-from advisor.words.ascii_output import printable
-from advisor.words.problems import ConfigurationError
+from advisor.words.problems import ConfigurationError, printable
 
 _MOST_BYTES = 256 * 1024
 """Largest file, bytes. Largest size of a YAML file, bytes. A settings file has a few kB, and the limit keeps

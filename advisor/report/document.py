@@ -1,20 +1,123 @@
 """The document ``advisor.analyze/1`` for scripts, in SI units. A missing or undefined number is None."""
 
 from collections.abc import Callable, Mapping, Sequence
+from functools import partial
 from types import MappingProxyType
 from typing import Any
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.campaign.state import CampaignState, JudgedManeuver
-from advisor.decision.crew_plan import CrewPlan
-from advisor.flight.signals.instrument_finding import InstrumentFinding
+from advisor.campaign.state import CampaignState, JudgedManeuver, LateralState
+from advisor.decision.verdict import CrewPlan, FlightTestVerdict, Remaining
+from advisor.flight.signals.trust import InstrumentFinding
 from advisor.flight.stream.flights import FlightHeard
+from advisor.oem.axis.estimate import AxisEstimate
 from advisor.oem.estimate import Estimate
-from advisor.report.axes.lateral_document import lateral_document
-from advisor.report.axis_document import concluded, fitted, flown, parameters, with_intervals
-from advisor.report.qualities import coefficients_of, qualities_document, qualities_of
+from advisor.report.qualities import (
+    coefficients_of,
+    levels_document,
+    levels_of,
+    qualities_document,
+    qualities_of,
+    tests_document,
+    tests_of,
+)
 from advisor.words.plain import picked, plain
 from advisor.words.problems import Problem
+from advisor.words.quantities import NORMAL_95
+
+
+def flown(judged: JudgedManeuver) -> dict[str, Any]:
+    """Return the times of a manoeuvre, its input, and its verdict."""
+    span, verdict = judged.maneuver.span, judged.verdict
+    return {
+        "start_boot_s": plain(span.start_s),
+        "end_boot_s": plain(span.end_s),
+        "record_from_boot_s": plain(span.record_from_s),
+        "last_step_boot_s": plain(span.last_step_s),
+        "input": span.kind,
+        "closed_by": span.closed_by,
+        "verdict": "accepted" if verdict.accepted else "rejected",
+        **picked(verdict, "sentence reasons cautions rules"),
+        **picked(judged, "excluded_because notes"),
+    }
+
+
+def concluded(verdict: FlightTestVerdict) -> dict[str, Any]:
+    """Return stop or continue, every rule's criterion, and the next input."""
+    following = verdict.next
+    return {
+        **picked(verdict, "rule decision sentence criterion_percent limit_percent stopped_at warnings"),
+        "by_rule": {
+            # Only the rule ``information`` holds quantities to their tolerances.
+            name: picked(progress, "stopped_at history_percent hindsight_stopped_at hindsight_percent")
+            | (
+                picked(progress, "prediction_percent parameter_percent")
+                if progress.prediction_percent or progress.parameter_percent
+                else {}
+            )
+            for name, progress in verdict.by_rule.items()
+        },
+        "next": following
+        and {
+            **picked(following, "advice holding_back"),
+            "remaining_maneuvers": picked(following.remaining or Remaining(None, None), "median p90"),
+        },
+    }
+
+
+def fitted(estimate: Estimate | None) -> dict[str, Any]:
+    """Return the cost of an estimate, and measures of the fit for each output."""
+    fits = estimate.fits[0].items() if estimate else ()
+    return {
+        "cost": plain(estimate.cost) if estimate else None,
+        "fit": {name: picked(fit, "rms tic r2") for name, fit in fits},
+    }
+
+
+def parameters(estimate: object) -> dict[str, Any] | None:
+    """Return every parameter as ``{value, std, std_cr}``. A parameter that is not identifiable has the value
+    None and a reason.
+    """
+    if not isinstance(estimate, Estimate):
+        return None
+    return {
+        name: {"value": None, "std": None, "std_cr": None, "reason": estimate.not_identifiable[name]}
+        if name in estimate.not_identifiable
+        else {"value": plain(value), "std": plain(std), "std_cr": plain(std_cr)}
+        for name, value, std, std_cr in zip(
+            estimate.names, estimate.theta, estimate.std, estimate.std_cr, strict=True
+        )
+    }
+
+
+def terms_of(estimate: Estimate) -> dict[str, Any]:
+    """Return the coefficients of the terms that the user added, with their 95 % intervals and their gains in
+    log likelihood.
+    """
+    return {
+        term.name: {
+            **picked(term, "value std"),
+            "ci95": [term.value - NORMAL_95 * term.std, term.value + NORMAL_95 * term.std],
+            "log_likelihood_gained": plain(term.gained),
+        }
+        for term in estimate.terms
+    }
+
+
+def with_intervals(estimate: Estimate) -> dict[str, Any]:
+    """Return every parameter with its 95 % interval ``ci95``; the interval is None if unknown."""
+    document: dict[str, Any] = {}
+    for name, entry in (parameters(estimate) or {}).items():
+        if name in estimate.fixed:
+            document[name] = {**entry, "ci95": [entry["value"], entry["value"]], "fixed": True}
+            continue
+        ci95 = None
+        if entry["value"] is not None and entry["std"] is not None:
+            half = NORMAL_95 * entry["std"]
+            ci95 = [entry["value"] - half, entry["value"] + half]
+        document[name] = {**entry, "ci95": ci95}
+    return document | terms_of(estimate)
+
 
 SCHEMA = "advisor.analyze/1"
 
@@ -165,4 +268,66 @@ def _model(model: Estimate | None) -> dict[str, Any] | None:
         "identifiability": identifiability(model),
         "instruments": instruments(model),
         "notes": list(model.notes),
+    }
+
+
+_quality = partial(picked, names="value std ci95")
+
+
+def lateral_document(state: LateralState, aircraft: Aircraft) -> dict[str, Any]:
+    """Return the block ``lateral`` of ``advisor analyze --json``, in SI units."""
+    model = state.model
+    return {
+        "maneuvers": [_side_maneuver(judged) for judged in state.maneuvers],
+        "flight_test": concluded(state.flight_test),
+        "model": _side_model(model),
+        "modes": _modes(model) if model else None,
+        "levels": levels_document(levels_of(state)),
+        "qualification": tests_document(tests_of(state, aircraft)),
+        "not_identifiable": dict(model.not_identifiable) if model else {},
+        "estimate_from": list(state.estimate_from),
+    }
+
+
+def _side_maneuver(judged: JudgedManeuver) -> dict[str, Any]:
+    estimate = judged.estimate if isinstance(judged.estimate, AxisEstimate) else None
+    entry = flown(judged)
+    del entry["record_from_boot_s"]
+    return {
+        **picked(judged.maneuver, "number flight boot mode"),
+        **entry,
+        **fitted(estimate),
+        "estimates": _with_values(estimate) if estimate else None,
+        "modes": _modes(estimate) if estimate else None,
+        "not_identifiable": dict(estimate.not_identifiable) if estimate else {},
+    }
+
+
+def _with_values(estimate: Estimate) -> dict[str, Any]:
+    """Return every identifiable derivative with its 95 % interval."""
+    return {name: entry for name, entry in with_intervals(estimate).items() if "reason" not in entry}
+
+
+def _side_model(model: AxisEstimate | None) -> dict[str, Any] | None:
+    if model is None:
+        return None
+    return {
+        **_with_values(model),
+        "reference_airspeed_m_s": plain(model.airspeed_m_s),
+        "instruments": {
+            name: {"value": plain(value), "std": plain(std)} for name, (value, std) in model.nuisances.items()
+        },
+    }
+
+
+def _modes(estimate: AxisEstimate) -> dict[str, Any]:
+    modes = estimate.modes
+    return {
+        "dutch_roll": {
+            "omega": _quality(modes.get("dutch_roll_omega")),
+            "zeta": _quality(modes.get("dutch_roll_zeta")),
+        },
+        "roll": {"time_constant": _quality(modes.get("roll_time_constant"))},
+        "spiral": {"pole": _quality(modes.get("spiral_pole"))},
+        "left_out": dict(estimate.modes_left_out),
     }

@@ -22,8 +22,8 @@ from advisor.report.facts.estimates import structure_lines
 from advisor.report.facts.gap import changes, grown_said, law_said, shrink_said, size_of_gap, where_said
 from advisor.report.facts.sizes import WORSE, named, short, with_error
 from advisor.report.gap_causes import PRESENT, ranking, unseen, why_of
+from advisor.report.gap_document import GapStep
 from advisor.report.gap_fidelity import errors, peaks, whereabouts, worst_maneuver, yardsticks
-from advisor.report.gap_steps import GapStep
 from advisor.words.quantities import CHANNELS, Quantity
 
 _QUANTITIES = CHANNELS | {"a_z": Quantity("a_z", "g", 1.0 / GRAVITY_M_S2)}

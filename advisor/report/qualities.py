@@ -214,3 +214,21 @@ def _step(rolled: list[JudgedManeuver]) -> tuple[float, float]:
         for (onset, level), (after, _) in pairwise(m.maneuver.span.steps)
     ]
     return max(steps, default=(0.0, 1.0))
+
+
+def side_quality_lines(state: LateralState, aircraft: Aircraft) -> Iterator[str]:
+    """Yield text lines: the modes, the levels for light aircraft, and the tests of the aircraft
+    file's model.
+    """
+    yield from (f"  {fact.name:<18} {fact.sentence}" for fact in mode_facts(state))
+    levels = [level for level in levels_of(state) if level.group == next(iter(GROUPS))]
+    if levels:
+        yield f"  {LATERAL_SOURCE}, Classes {levels[0].group}:"
+        yield from (f"    {level.governing.sentence} ({CATEGORIES[level.category]})" for level in levels)
+        yield f"  {MANNED}"
+    for t in tests_of(state, aircraft):
+        mark = "✓" if t.holds else "✗"
+        yield (
+            f"  {mark} {t.name}: flown {t.flown:.3g}, simulator {t.simulated:.3g} {t.unit}".rstrip()
+            + f" (14 CFR Part 60 {t.entry}: ± {t.limit:.2g})"
+        )

@@ -10,12 +10,9 @@ from math import degrees, inf, radians
 
 import numpy as np
 
-from advisor.aircraft.aircraft import Aircraft
-from advisor.aircraft.controls import Pairs
+from advisor.aircraft.aircraft import Aircraft, Pairs, ScriptIdentity
 from advisor.aircraft.reference import SIDE_PARAMETERS
-from advisor.aircraft.script_identity import ScriptIdentity
 from advisor.decision.conditions import ALPHA_MARGIN, LINEAR_RAD, travel_of
-from advisor.decision.held_inputs import held_response
 from advisor.decision.inputs import StepInput
 from advisor.flight.vehicle.mixers import Control as AnyControl
 from advisor.flight.vehicle.mixers import Role, arduplane_roles
@@ -232,7 +229,11 @@ def _side(
 
 def _peaks(a: FloatArray, b: FloatArray, rows: tuple[int, int], command: FloatArray) -> tuple[float, float]:
     """Return the largest absolute values of two states while the command is held over each step."""
-    peaks = np.max(np.abs(held_response(a, b, command, _STEP_S)), axis=0)
+    from scipy.signal import lsim  # not on the start path
+
+    t = _STEP_S * np.arange(len(command) + 1)
+    states = lsim((a, b[:, None], np.eye(len(b)), np.zeros((len(b), 1))), [*command, 0.0], t, interp=False)[1]
+    peaks = np.max(np.abs(states), axis=0)
     return float(peaks[rows[0]]), float(peaks[rows[1]])
 
 

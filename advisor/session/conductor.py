@@ -11,11 +11,10 @@ from threading import Event
 from time import monotonic
 from typing import TYPE_CHECKING, Any
 
-from advisor.campaign.hand_decisions import NOTHING, ByHand, HandDecision
+from advisor.campaign.state import NOTHING, ByHand, HandDecision
 from advisor.process.liveness import ENDED_AFTER_S
-from advisor.session.conducting import Conducting, SessionReport, Tell
+from advisor.session.conducting import Conducting, LinkRequest, SessionReport, Source, Tell
 from advisor.session.replay import LogPlayer
-from advisor.session.source import LinkRequest, Source
 from advisor.session.timeline import DataBegin, Goal, Position
 
 if TYPE_CHECKING:

@@ -15,12 +15,12 @@ from typing import TYPE_CHECKING, Any
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.process import interrupt
-from advisor.session.child_process import start_child
+from advisor.session.remote import start_child
 from advisor.words.axes import AxisName
 from advisor.words.problems import Problem
 
 if TYPE_CHECKING:
-    from advisor.campaign.hand_decisions import ByHand
+    from advisor.campaign.state import ByHand
     from advisor.gap.result import Diagnosis
 
 _GIVES_WAY = 10
@@ -45,7 +45,7 @@ class GapTask:
         from advisor.analysis.marks_file import read_by_hand
 
         if self.sideways:
-            from advisor.analysis.axes.side_comparison import compare_side_flown
+            from advisor.analysis.axis_flown import compare_side_flown
             from advisor.analysis.whole_flights import read_whole
 
             def sideways() -> "Diagnosis":
@@ -68,7 +68,7 @@ def diagnosed(
 ) -> Document:
     """Diagnose logs against the aircraft file's simulator; return ``advisor.gap/1`` with the next steps."""
     from advisor.analysis.gap import compare_logs
-    from advisor.report.gap_steps import next_steps
+    from advisor.report.gap_document import next_steps
     from advisor.words.plain import plain
 
     file = str(aircraft_file) if aircraft_file else None

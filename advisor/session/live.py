@@ -7,13 +7,13 @@ from shutil import disk_usage
 from typing import TYPE_CHECKING
 
 from advisor.analysis.marks_file import keep_by_hand
-from advisor.campaign.hand_decisions import ByHand
+from advisor.campaign.state import ByHand
 from advisor.flight.signals.messages import Columns
 from advisor.mavlink.link.health import LinkStatistics
 from advisor.mavlink.logs.parameter_file import ParameterFiles
 from advisor.process.liveness import OLD_AFTER_S
 from advisor.session.behind import backlog_s
-from advisor.session.source import Condition, LinkHealth, LinkRequest
+from advisor.session.conducting import Condition, LinkHealth, LinkRequest
 
 if TYPE_CHECKING:
     from advisor.mavlink.link.kept_link import KeptLink

@@ -1,27 +1,85 @@
 """A conductor in a separate process, so that no estimate delays the screens."""
 
+import os
 import pickle
-from collections.abc import Callable
-from contextlib import suppress
+import signal
+import sys
+import traceback
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass, replace
 from functools import partial
 from queue import Empty, SimpleQueue
+from subprocess import DEVNULL, PIPE, Popen
 from threading import Event, Lock, Thread
 from typing import IO, TYPE_CHECKING
 
-from advisor.campaign.hand_decisions import NOTHING, ByHand
+from advisor.campaign.state import NOTHING, ByHand
 from advisor.mavlink.link.health import LinkStatistics
-from advisor.mavlink.link.keeping import Door
+from advisor.mavlink.link.kept_link import Door
 from advisor.mavlink.link.observer import LinkObserver
+from advisor.process import interrupt
+from advisor.process.children import python_module
 from advisor.process.liveness import Watch
 from advisor.session.behind import BehindTeller
-from advisor.session.child_process import pause_s, said_of, start_child
-from advisor.session.conducting import Changes, Conducting, SessionReport, Tell
+from advisor.session.conducting import Changes, Conducting, LinkHealth, SessionReport, Source, Tell
 from advisor.session.live import renewed
-from advisor.session.source import LinkHealth, Source
 
 if TYPE_CHECKING:
     from advisor.campaign.campaign import Campaign
+
+
+_LONGEST_PAUSE_S = 10.0
+
+
+def start_child(module: str, shows_errors: bool = False) -> "Popen[bytes]":
+    """Start a module of the advisor as a process that exchanges pickles over its standard streams.
+
+    Parameters
+    ----------
+    module
+        Name of the module for ``python -m``.
+    """
+    return Popen(python_module(module), stdin=PIPE, stdout=PIPE, stderr=None if shows_errors else DEVNULL)
+
+
+@contextmanager
+def messages_to_parent() -> Iterator[IO[bytes]]:
+    """Yield the pipe of messages to the parent of this process. An error is the last message."""
+    interrupt.ignore()  # a signal is for the parent, which then ends this process in order
+    # Closed at the end, after which the other side closes the requests.
+    with suppress(BrokenPipeError), os.fdopen(os.dup(sys.stdout.fileno()), "wb") as messages:
+        # A library's output must not fall among the messages.
+        os.dup2(sys.stderr.fileno(), sys.stdout.fileno())
+        try:
+            yield messages
+        except Exception as failure:
+            failure.add_note(traceback.format_exc())
+            send(messages, failure)
+
+
+def send(pipe: IO[bytes], message: object) -> None:
+    """Write a message immediately."""
+    pickle.dump(message, pipe, pickle.HIGHEST_PROTOCOL)
+    pipe.flush()
+
+
+def said_of(code: int, watch: Watch) -> str:
+    """Return a clause on the end of a process, from the exit code and the watch."""
+    if watch.ended_after_s is not None:
+        return f"did not answer for {watch.ended_after_s:.0f} s and was ended"
+    if code >= 0:
+        return f"ended with exit code {code}"
+    try:
+        return f"was killed by {signal.Signals(-code).name}"
+    except ValueError:
+        return f"was killed by signal {-code}"
+
+
+def pause_s(deaths: int) -> float:
+    """Return the pause before a process is restarted, s: zero at first, a second more after each death."""
+    return min(deaths - 1.0, _LONGEST_PAUSE_S)
+
 
 Request = tuple[str, tuple[object, ...]]
 """Request to the conductor: the name of a method of `Conducting`, and its arguments."""

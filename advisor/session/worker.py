@@ -9,9 +9,9 @@ from contextlib import suppress
 from threading import Thread
 from typing import IO
 
-from advisor.session.child_process import messages_to_parent, send
 from advisor.session.conducting import SessionReport, changes
 from advisor.session.conductor import Conductor
+from advisor.session.remote import messages_to_parent, send
 
 
 class Reporter:

@@ -19,16 +19,16 @@ import numpy as np
 from advisor.aircraft.aircraft import Aircraft
 from advisor.flight.instruments.atmosphere import air_flown
 from advisor.flight.maneuvers.maneuver import Maneuver
-from advisor.flight.signals.true_airspeed import SEA_LEVEL_DENSITY_KG_M3
-from advisor.gap.candidates.nuisances import STATIC_PORT
+from advisor.flight.signals.track import SEA_LEVEL_DENSITY_KG_M3
+from advisor.gap.candidates.known import STATIC_PORT
 from advisor.gap.records.airspeed import measures_speed
 from advisor.gap.records.prepare import prepare
 from advisor.gap.records.unmeasured_alpha import alpha_by_motion
 from advisor.gap.search.baseline import fit_unfiltered
-from advisor.gap.uncatalogued.airspeed_scale import airspeed_scale_of
+from advisor.gap.uncatalogued.weight_check import airspeed_scale_of
 from advisor.simulators.protocol import Simulator
 from advisor.words.problems import UnusableInputError
-from advisor.words.quantiles import NORMAL_95
+from advisor.words.quantities import NORMAL_95
 
 _ODDS = 10.0
 """Prior odds that a log follows MAVLink's convention."""

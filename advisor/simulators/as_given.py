@@ -8,8 +8,7 @@ import numpy as np
 from advisor.aircraft.aircraft import Aircraft
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.flight.signals.record import Channel
-from advisor.gap.candidates.catalogue import variants_for
-from advisor.gap.candidates.known import base_entries, with_known
+from advisor.gap.candidates.known import base_entries, variants_for, with_known
 from advisor.gap.effects import EFFECTS
 from advisor.gap.fitting.problem import EffectProblem
 from advisor.gap.records.flights import PreparedManeuver, PreparedManeuvers

@@ -16,7 +16,7 @@ from advisor.simulators.interface import interface_fault
 from advisor.simulators.linear import LinearSimulator
 from advisor.simulators.protocol import Replay
 from advisor.words.problems import ConfigurationError, UnusableInputError
-from advisor.words.quantiles import NORMAL_95
+from advisor.words.quantities import NORMAL_95
 
 _LEAST = 2
 """Least number of manoeuvres in a simulator's log. A single manoeuvre identifies no effect, because nothing

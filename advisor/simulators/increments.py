@@ -11,7 +11,7 @@ from math import cos, exp
 import numpy as np
 
 from advisor.aircraft.standard_gravity import GRAVITY_M_S2
-from advisor.gap.candidates.nuisances import PROPELLER
+from advisor.gap.candidates.known import PROPELLER
 from advisor.gap.simulator.layout import (
     DERIVATIVES,
     EFFECT_ENTRIES,

@@ -18,8 +18,8 @@ from typing import Any
 import numpy as np
 
 from advisor.aircraft.standard_gravity import GRAVITY_M_S2
-from advisor.flight.signals.motion import integrated
-from advisor.flight.signals.robust import rms
+from advisor.flight.signals.derived_alpha import integrated
+from advisor.flight.signals.record import rms
 from advisor.process.arrays import FloatArray
 from advisor.simulators.protocol import Replay
 from advisor.words.problems import UnusableInputError

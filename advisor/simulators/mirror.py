@@ -19,8 +19,7 @@ from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft.standard_gravity import GRAVITY_M_S2
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.flight.signals.record import Channel
-from advisor.gap.candidates.catalogue import variants_for
-from advisor.gap.candidates.known import Effects, base_entries
+from advisor.gap.candidates.known import Effects, base_entries, variants_for
 from advisor.gap.diagnose import Examined, examine
 from advisor.gap.effects.pitch_rate_skew import EFFECT
 from advisor.gap.fitting.fit import fit

@@ -7,8 +7,7 @@ from itertools import product
 import numpy as np
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.gap.candidates.catalogue import variants_for
-from advisor.gap.candidates.known import Effects, base_entries, with_known
+from advisor.gap.candidates.known import Effects, base_entries, variants_for, with_known
 from advisor.gap.effects.actuator_lag import LAG
 from advisor.gap.effects.transport_delay import DELAY
 from advisor.gap.fitting.fit import EffectFit, fit

@@ -14,7 +14,7 @@ from functools import partial
 import numpy as np
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.gap.candidates.nuisances import PROPELLER
+from advisor.gap.candidates.known import PROPELLER
 from advisor.gap.diagnose import Examined
 from advisor.gap.fitting.fit import EffectFit, fit
 from advisor.gap.fitting.holdout import HeldOut

@@ -6,13 +6,11 @@ from math import inf, isfinite
 
 from textual.app import App
 
-from advisor.campaign.hand_decisions import HandDecision
+from advisor.campaign.state import HandDecision
 from advisor.flight.maneuvers.marks import LONGEST_S
-from advisor.session.conducting import Conducting
-from advisor.session.source import LinkRequest, Tempo
-from advisor.session.view import View
+from advisor.session.conducting import Conducting, LinkRequest, Tempo, View
 from advisor.tui.screens.face import Face
-from advisor.words.digits import clock
+from advisor.words.quantities import clock
 
 LINK_ACTIONS = ("follow_another", "ask_for_outputs", "take_guess")
 REPLAY_ACTIONS = ("pause", "step", "faster", "slower", "jump", "jump_by", "seek_by")

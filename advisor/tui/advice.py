@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 from typing import Literal
 
 from advisor.session.behind import spoken
-from advisor.session.view import View
+from advisor.session.conducting import View
 
 Word = Literal[
     "CONTINUE", "REPEAT", "TEST COMPLETE", "RECOVER", "ENOUGH", "WAIT", "BEHIND", "NO LINK", "NO DATA"

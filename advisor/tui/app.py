@@ -19,16 +19,20 @@ from textual.theme import Theme
 from textual.worker import Worker, WorkerState
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.session.conducting import Conducting, SessionReport
-from advisor.session.source import Tempo
-from advisor.session.view import View, view_before_first, view_sideways
+from advisor.session.conducting import (
+    Conducting,
+    SessionReport,
+    Tempo,
+    View,
+    view_before_first,
+    view_sideways,
+)
 from advisor.tui import keys
 from advisor.tui.actions import LINK_ACTIONS, REPLAY_ACTIONS, HandActions, LinkActions, ReplayActions
 from advisor.tui.explaining import Explain, commands, explanation
 from advisor.tui.panes.flight import WholeFlightPane
-from advisor.tui.panes.status_line import ReplayBar
 from advisor.tui.screens.engineer import EngineerScreen
-from advisor.tui.screens.face import Face
+from advisor.tui.screens.face import Face, ReplayBar
 from advisor.tui.screens.pilot import PilotScreen
 from advisor.tui.settings import Settings
 from advisor.tui.sound import Sound, Voice

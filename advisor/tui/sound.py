@@ -4,7 +4,7 @@ import shutil
 from collections.abc import Callable
 from subprocess import DEVNULL, Popen
 
-from advisor.session.view import View
+from advisor.session.conducting import View
 from advisor.tui.advice import advise
 from advisor.tui.panes.last_verdict import for_the_pilot
 

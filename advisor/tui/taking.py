@@ -13,11 +13,10 @@ from textual.geometry import Region
 from textual.strip import Strip
 
 from advisor.process.atomic_file import write_atomically
-from advisor.session.view import View
+from advisor.session.conducting import View
 from advisor.tui.panes.pane import Pane
-from advisor.tui.plot.painting import BITS, BLANK
-from advisor.tui.plot.widget import Plot
-from advisor.words.ascii_output import printable
+from advisor.tui.plot.painting import BITS, BLANK, Plot
+from advisor.words.problems import printable
 
 _CELL_WIDTH, _CELL_HEIGHT, _BASELINE = 12.2, 24.4, 18.5
 _TEXT = re.compile(

@@ -12,8 +12,8 @@ from pathlib import Path
 import click
 
 from advisor.aircraft.aircraft import Aircraft
+from advisor.session.conducting import Tempo
 from advisor.session.remote import ConductorTask, RemoteConductor
-from advisor.session.source import Tempo
 from advisor.web.access import Access, checked_origin, on_this_computer, read_password
 from advisor.words.problems import ConfigurationError
 

@@ -12,9 +12,8 @@ from threading import Condition, Event, Thread
 from typing import Self
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.mavlink.link.keeping import new_door
-from advisor.session.conducting import Conducting, SessionReport, changes
-from advisor.session.source import Tempo
+from advisor.mavlink.link.kept_link import new_door
+from advisor.session.conducting import Conducting, SessionReport, Tempo, changes
 from advisor.tui.settings import Settings
 
 ADDRESS, KEY = "ADVISOR_PAGE_ADDRESS", "ADVISOR_PAGE_KEY"

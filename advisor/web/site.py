@@ -17,7 +17,7 @@ from textual_serve.app_service import AppService
 from textual_serve.download_manager import DownloadManager
 from textual_serve.server import Server
 
-from advisor.mavlink.link.keeping import Door
+from advisor.mavlink.link.kept_link import Door
 from advisor.process.children import python_module
 from advisor.web.access import STATIC, Access, Login, page
 from advisor.web.showing import ADDRESS, KEY

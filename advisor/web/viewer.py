@@ -17,7 +17,7 @@ from typing import Any, ClassVar
 
 from textual.screen import Screen
 
-from advisor.mavlink.link.keeping import Door
+from advisor.mavlink.link.kept_link import Door
 from advisor.process import interrupt
 from advisor.process.liveness import OLD_AFTER_S
 from advisor.session.conducting import Changes, Conducting, SessionReport, Tell

@@ -22,8 +22,7 @@ from pathlib import Path
 
 import numpy as np
 
-from advisor.aircraft.aircraft import Aircraft
-from advisor.aircraft.sensors import Alpha, Beta
+from advisor.aircraft.aircraft import Aircraft, Alpha, Beta
 from advisor.scripts.inputs import MULTISINE
 from advisor.scripts.table import Source, script_table
 from benchmarks.arduplane_generator.airframe import draw_airframe

@@ -9,10 +9,10 @@ import numpy as np
 from advisor.aircraft.aircraft import Aircraft
 from advisor.campaign.campaign import Campaign
 from advisor.campaign.state import CampaignState, JudgedManeuver
-from advisor.mavlink.logs.whole import read_whole_log
+from advisor.mavlink.logs.logs import read_whole_log
 from advisor.model.axes.lateral import LATERAL, natural_size
 from advisor.oem.estimate import Estimate
-from advisor.words.quantiles import NORMAL_95
+from advisor.words.quantities import NORMAL_95
 
 TOLERANCE = 0.10
 """Tolerance of a derivative, as a share of it: twice the advisor's usual tolerance of the response."""

@@ -5,7 +5,7 @@ from collections.abc import Iterator
 import numpy as np
 from pymavlink.dialects.v20 import ardupilotmega as mavlink
 
-from advisor.flight.signals.true_airspeed import standard_pressure
+from advisor.flight.signals.track import standard_pressure
 from benchmarks.sealed.tlog import STANDARD_GRAVITY, Timed, int16, microseconds, milliseconds, packed
 
 from .body import Body

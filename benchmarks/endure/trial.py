@@ -18,7 +18,7 @@ from typing import Any
 from unittest.mock import patch
 
 from advisor.aircraft_file.read import load_aircraft
-from advisor.analysis.log_series import LogSeries
+from advisor.analysis.marks_file import LogSeries
 from advisor.campaign.campaign import Campaign
 from advisor.cli import group as cli
 from advisor.process.parts import INTERNAL

@@ -10,7 +10,7 @@ from typing import Protocol
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft_file.read import load_aircraft
-from advisor.analysis.axes.side_comparison import accepted_of, compare_side_flown
+from advisor.analysis.axis_flown import accepted_of, compare_side_flown
 from advisor.analysis.gap import compare_flown, opened_simulator
 from advisor.analysis.gap_flights import GapFlights, maneuvers_of, without_refused
 from advisor.analysis.whole_flights import read_whole

@@ -5,8 +5,7 @@ from collections.abc import Iterator, Mapping
 import numpy as np
 
 from advisor.gap.effects import EFFECTS
-from advisor.gap.kit.effect import BLOCKS, Effect, Said, without_sizes
-from advisor.gap.kit.variant import Variant
+from advisor.gap.kit.effect import BLOCKS, Effect, Said, Variant, without_sizes
 from advisor.gap.verdict.causes import parameters_of
 from advisor.report.facts.sizes import in_units, short
 from benchmarks.pages.planned import PLANS, described

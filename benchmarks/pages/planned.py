@@ -9,8 +9,8 @@ import numpy as np
 from advisor.aircraft.aircraft import Aircraft
 from advisor.flight.maneuvers.maneuver import Maneuver, Span
 from advisor.flight.signals.record import Channel
-from advisor.gap.candidates.catalogue import variants_for
-from advisor.gap.kit.variant import Variant
+from advisor.gap.candidates.known import variants_for
+from advisor.gap.kit.effect import Variant
 from advisor.gap.records.prepare import prepare
 
 

@@ -15,10 +15,10 @@ from pathlib import Path
 from advisor.aircraft_file.read import load_aircraft
 from advisor.campaign.campaign import Campaign
 from advisor.flight.signals.messages import Columns
-from advisor.mavlink.logs.whole import read_whole_log
+from advisor.mavlink.logs.logs import read_whole_log
+from advisor.session.conducting import Tempo
 from advisor.session.conductor import Conductor
 from advisor.session.replay import LogPlayer
-from advisor.session.source import Tempo
 from advisor.tui.app import AdvisorApp
 from advisor.tui.settings import Face, Settings
 from advisor.tui.taking import drawn

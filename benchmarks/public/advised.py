@@ -9,8 +9,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from advisor.aircraft.aircraft import Aircraft
-from advisor.aircraft.sensors import Alpha, Beta
+from advisor.aircraft.aircraft import Aircraft, Alpha, Beta
 from advisor.aircraft.standard_gravity import GRAVITY_M_S2
 from advisor.library import estimate
 from advisor.model.axes.lateral import LATERAL

@@ -19,7 +19,7 @@ from advisor.aircraft.aircraft import Aircraft
 from advisor.campaign.campaign import Campaign
 from advisor.campaign.state import JudgedManeuver
 from advisor.cli.options import read_aircraft
-from advisor.mavlink.logs.whole import read_whole_log
+from advisor.mavlink.logs.logs import read_whole_log
 from advisor.scripts.table import FlightLimits, Source, script_table
 
 from .airframes import AIRFRAMES

@@ -7,8 +7,7 @@ import numpy as np
 from scipy.optimize import minimize_scalar
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.flight.elevator.axes.side_controls import find_side_control
-from advisor.flight.elevator.elevator_outputs import find_elevator
+from advisor.flight.elevator.elevator_outputs import find_elevator, find_side_control
 from advisor.flight.vehicle.ardupilot_wiring import ardupilot_wiring
 from advisor.flight.vehicle.surfaces import Surface
 from advisor.process.arrays import FloatArray

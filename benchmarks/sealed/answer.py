@@ -23,7 +23,7 @@ from advisor.cli.running import Progress, runner_of, running_options
 
 def answer(case: Path, axis: str = "pitch") -> tuple[dict[str, Any], float]:
     """Return the document of ``advisor gap --json`` (empty without one), and the CPU time in s."""
-    from advisor.analysis.axes.side_comparison import compare_side_flown
+    from advisor.analysis.axis_flown import compare_side_flown
     from advisor.analysis.gap import compare_logs
     from advisor.analysis.whole_flights import read_whole
     from advisor.cli.options import read_aircraft

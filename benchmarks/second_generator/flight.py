@@ -8,18 +8,7 @@ from . import actuator, pilot
 from .actuator import Load, Servo, servo_step
 from .flight_model import FlightModel
 from .kernel import Floats, kernel
-from .motion import (
-    HEIGHT,
-    MODE,
-    MODE_RATE,
-    STATES,
-    THETA,
-    Q,
-    Surroundings,
-    advance,
-    density,
-    derivatives,
-)
+from .motion import HEIGHT, MODE, MODE_RATE, STATES, THETA, Q, Surroundings, advance, density, derivatives
 from .pilot import Pilot, elevator_command, throttle_command
 from .trim import level_state
 

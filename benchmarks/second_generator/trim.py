@@ -7,19 +7,7 @@ from scipy.optimize import root
 
 from .flight_model import FlightModel
 from .kernel import Floats
-from .motion import (
-    GRAVITY,
-    HEIGHT,
-    LAGGED_ALPHA,
-    STATES,
-    STILL_AIR,
-    THETA,
-    Q,
-    U,
-    W,
-    density,
-    derivatives,
-)
+from .motion import GRAVITY, HEIGHT, LAGGED_ALPHA, STATES, STILL_AIR, THETA, Q, U, W, density, derivatives
 
 
 @dataclass(frozen=True)

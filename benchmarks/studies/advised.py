@@ -8,14 +8,14 @@ from functools import cache
 import numpy as np
 
 from advisor.aircraft.aircraft import Aircraft, CampaignPlan, Limits
-from advisor.bundled.study.campaigns import estimate_copies
-from advisor.bundled.study.flying import (
+from advisor.bundled.study.campaigns import (
     AIRFRAMES,
     UAV,
     NoiselessManeuver,
     NonlinearAircraft,
     Scene,
     as_maneuver,
+    estimate_copies,
     fly_named,
     follow,
     noise_scale,

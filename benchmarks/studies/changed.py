@@ -5,9 +5,15 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from advisor.bundled.study.campaigns import blocks, estimate_copies
-from advisor.bundled.study.flying import Scene, fly_named, noise_scale
-from advisor.bundled.study.paper import NOISE_PERCENT, ORDER
+from advisor.bundled.study.campaigns import (
+    NOISE_PERCENT,
+    ORDER,
+    Scene,
+    blocks,
+    estimate_copies,
+    fly_named,
+    noise_scale,
+)
 from advisor.decision.change import find_change
 from advisor.decision.history import CandidateManeuver
 from advisor.oem.estimate import Estimate

@@ -13,21 +13,19 @@ from typing import Literal
 
 import numpy as np
 
-from advisor.aircraft.aircraft import Aircraft, CampaignPlan
-from advisor.aircraft.controls import Elevator
+from advisor.aircraft.aircraft import Aircraft, CampaignPlan, Elevator
 from advisor.aircraft.reference import PARAMETERS, SPEED_EXPONENTS
-from advisor.bundled.study.flying import Scene, fly_named, respond
+from advisor.bundled.study.campaigns import Scene, fly_named, respond
 from advisor.campaign.campaign import Campaign, ManeuverJudged
 from advisor.campaign.state import CampaignState
-from advisor.decision.prediction import Prediction
-from advisor.decision.tolerance import tolerances
-from advisor.flight.signals.instrument_finding import InstrumentFinding
+from advisor.decision.prediction import Prediction, tolerances
+from advisor.flight.signals.trust import InstrumentFinding
 from advisor.mavlink.logs.logs import open_log
 from advisor.oem.estimate import Estimate
-from advisor.oem.findings import findings_of
+from advisor.oem.notes import findings_of
 from advisor.process.arrays import FloatArray
 from advisor.session.timeline import Timeline
-from advisor.words.quantiles import NORMAL_95
+from advisor.words.quantities import NORMAL_95
 from benchmarks.studies.forecast import Forecast
 from sim.effects.fitting import flight_of
 from sim.faults import Faults, Filters

@@ -10,9 +10,17 @@ from statistics import median
 import numpy as np
 
 from advisor.aircraft.aircraft import Rule
-from advisor.bundled.study.campaigns import CampaignBlock, Outcomes, fly_campaigns, judge, table_blocks
-from advisor.bundled.study.flying import Scene
-from advisor.bundled.study.paper import NOISE_PERCENT, ORDER, TABLE_1
+from advisor.bundled.study.campaigns import (
+    NOISE_PERCENT,
+    ORDER,
+    TABLE_1,
+    CampaignBlock,
+    Outcomes,
+    Scene,
+    fly_campaigns,
+    judge,
+    table_blocks,
+)
 from advisor.bundled.study.run import Study, StudyReport
 from advisor.bundled.study.text import count, wrapped
 from advisor.decision.paper_rules import (

@@ -9,23 +9,23 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from advisor.aircraft.aircraft import Aircraft, CampaignPlan, Rule
-from advisor.aircraft.controls import Elevator
-from advisor.bundled.study.campaigns import RULES, blocks, estimate_copies
-from advisor.bundled.study.flying import (
+from advisor.aircraft.aircraft import Aircraft, CampaignPlan, Elevator, Rule
+from advisor.bundled.study.campaigns import (
+    ORDER,
+    RULES,
     NoiselessManeuver,
     Scene,
     as_maneuver,
+    blocks,
+    estimate_copies,
     fly_named,
     follow,
     noise_scale,
     respond,
 )
-from advisor.bundled.study.paper import ORDER
 from advisor.decision.advice import forecast
-from advisor.decision.course import CriterionCourse
 from advisor.decision.history import CandidateManeuver
-from advisor.decision.information import knowledge
+from advisor.decision.information import CriterionCourse, knowledge
 from advisor.decision.prediction import MOMENTS, PREDICTED, response_to
 from advisor.decision.stopping import progress
 from advisor.flight.maneuvers.maneuver import Maneuver

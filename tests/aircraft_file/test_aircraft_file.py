@@ -4,8 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from advisor.aircraft.aircraft import Aircraft, Markers
-from advisor.aircraft.controls import Elevator, ElevatorOutput
+from advisor.aircraft.aircraft import Aircraft, Elevator, ElevatorOutput, Markers
 from advisor.aircraft_file.read import load_aircraft, parse_aircraft
 from advisor.gap.effects import EFFECTS
 from advisor.words.problems import ConfigurationError

@@ -5,9 +5,9 @@ from pathlib import Path
 
 import pytest
 
-from advisor.aircraft_file.lacks import KEYS, contradicted
+from advisor.aircraft_file.log_facts import KEYS, contradicted
 from advisor.aircraft_file.read import parse_aircraft
-from advisor.flight.signals.instrument_finding import InstrumentFinding
+from advisor.flight.signals.trust import InstrumentFinding
 from tests.conftest import Advisor
 from tests.schemas import breaches
 

@@ -4,22 +4,18 @@ import shlex
 import shutil
 from pathlib import Path
 
-import click
 import pytest
 
-from advisor.aircraft.aircraft import Aircraft
-from advisor.aircraft.controls import Elevator
-from advisor.aircraft_file.lacks import KEYS
-from advisor.aircraft_file.log_facts import LogFacts
+from advisor.aircraft.aircraft import Aircraft, Elevator
+from advisor.aircraft_file.log_facts import KEYS, LogFacts
 from advisor.aircraft_file.proposal import proposed
 from advisor.aircraft_file.read import load_aircraft
 from advisor.flight.elevator.elevator_guess import Guess
 from advisor.flight.elevator.elevator_outputs import find_elevator
 from advisor.flight.vehicle.ardupilot_wiring import WORDS
 from advisor.flight.vehicle.mixers import ELEVONS
-from advisor.flight.vehicle.surfaces import Scale
+from advisor.flight.vehicle.surfaces import Scale, Wiring
 from advisor.flight.vehicle.vehicle import Vehicle
-from advisor.flight.vehicle.wiring import Wiring
 from tests.conftest import Advisor
 
 CASES = Path(__file__).parents[1] / "cases"
@@ -65,70 +61,14 @@ def test_a_log_that_is_none_ends_with_code_3(advisor: Advisor, tmp_path: Path) -
     assert not (tmp_path / "a.yaml").exists()
 
 
-def test_a_blank_file_holds_every_key_as_a_comment(advisor: Advisor, tmp_path: Path) -> None:
-    advisor("aircraft", "new", "--blank", "-o", tmp_path / "a.yaml")
+@pytest.mark.parametrize("blank", [[], ["--blank"]])
+def test_a_file_without_a_log_holds_every_key_as_a_comment(
+    advisor: Advisor, tmp_path: Path, blank: list[str]
+) -> None:
+    advisor("aircraft", "new", *blank, "-o", tmp_path / "a.yaml")
     text = (tmp_path / "a.yaml").read_text()
     assert load_aircraft(tmp_path / "a.yaml") == Aircraft()
     assert [key.path for key in KEYS if f"# {key.path.rpartition('.')[2]}: {key.example}" not in text] == []
-
-
-@pytest.fixture
-def answers(monkeypatch: pytest.MonkeyPatch) -> list[str]:
-    """Answers that the questions take one by one; after the last the input ends."""
-    given: list[str] = []
-
-    def prompt(question: str, default: str, err: bool) -> str:
-        if not given:
-            raise click.Abort
-        return given.pop(0) or default
-
-    monkeypatch.setattr("click.prompt", prompt)
-    return given
-
-
-def test_answers_make_the_file(advisor: Advisor, tmp_path: Path, answers: list[str]) -> None:
-    answers += ["Kite", "3", "1900:20 1100:-20 1500:0", "0.06", "", "named_value:AOA", "0.4", "", "18.5"]
-    answers += ["3.1", "0.6", "0.2", "0.25", "", "", "12"]
-    run = advisor("aircraft", "new", "-o", tmp_path / "a.yaml")
-    assert (run.returncode, run.stderr.count("\n")) == (0, 1)
-    aircraft = load_aircraft(tmp_path / "a.yaml")
-    assert aircraft.name == "Kite"
-    assert aircraft.elevator.calibration == ((1100.0, -20.0), (1500.0, 0.0), (1900.0, 20.0))
-    assert (aircraft.elevator.lag_s, aircraft.elevator.delay_s) == (0.06, None)
-    assert aircraft.alpha.vane_arm_m == 0.4
-    assert (aircraft.limits.bank_deg, aircraft.limits.alpha_deg) == (30.0, 12.0)
-
-
-def test_several_outputs_have_a_calibration_each(advisor, tmp_path, answers):
-    answers += ["Wing", "1 2", "1000:-10 2000:10", "1000:10 2000:-10", *[""] * 13]
-    assert advisor("aircraft", "new", "-o", tmp_path / "a.yaml").returncode == 0
-    outputs = load_aircraft(tmp_path / "a.yaml").elevator.outputs
-    assert [(one.output, one.calibration) for one in outputs] == [
-        (1, ((1000.0, -10.0), (2000.0, 10.0))),
-        (2, ((1000.0, 10.0), (2000.0, -10.0))),
-    ]
-
-
-def test_an_answer_that_is_wrong_is_asked_again(advisor: Advisor, tmp_path: Path, answers: list[str]) -> None:
-    answers += ["", "two", "99", "2", "1500", "1500:0 1500:1", "", "5 ms", "0.05", *[""] * 12]
-    run = advisor("aircraft", "new", "-o", tmp_path / "a.yaml")
-    assert run.returncode == 0
-    for sentence in (
-        "two is not an output",
-        "99 is not a servo output",
-        "Give pairs",
-        "PWM must rise",
-        "5 ms is no",
-    ):
-        assert sentence in run.stderr
-    assert load_aircraft(tmp_path / "a.yaml").elevator.lag_s == 0.05
-
-
-def test_questions_without_answers_leave_no_file(advisor, tmp_path, answers):
-    run = advisor("aircraft", "new", "-o", tmp_path / "a.yaml")
-    assert run.returncode == 2
-    assert "advisor aircraft new --from LOG" in run.stderr
-    assert not (tmp_path / "a.yaml").exists()
 
 
 def test_elevons_are_found_by_the_parameters_and_both_are_described() -> None:

@@ -8,8 +8,8 @@ from click.testing import CliRunner
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.analysis import axis_flown as chosen
-from advisor.analysis.log_series import LogSeries
-from advisor.cli.axes import lateral_gap as side_gap_command
+from advisor.analysis.marks_file import LogSeries
+from advisor.cli import axis_gap as side_gap_command
 from advisor.cli.group import advisor
 from advisor.words.problems import UnusableInputError
 

@@ -12,13 +12,11 @@ import pytest
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.analysis.gap_flights import maneuvers_of
-from advisor.analysis.log_series import LogSeries
-from advisor.analysis.marks_file import write_by_hand
+from advisor.analysis.marks_file import LogSeries, write_by_hand
 from advisor.campaign.campaign import Campaign, CampaignEvent
-from advisor.campaign.hand_decisions import ByHand, Remark
+from advisor.campaign.state import ByHand, Remark
 from advisor.cli.group import main
-from advisor.flight.maneuvers.events import ManeuverFlown
-from advisor.flight.maneuvers.maneuver import Maneuver, are_one
+from advisor.flight.maneuvers.maneuver import Maneuver, ManeuverFlown, are_one
 from advisor.flight.signals.messages import Columns
 from advisor.flight.stream.stream import FlightStream
 from tests.flights import TWO, recorded

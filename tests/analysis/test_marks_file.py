@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from advisor.analysis.marks_file import keep_by_hand, path_beside, read_by_hand, write_by_hand
-from advisor.campaign.hand_decisions import NOTHING, ByHand, Remark
+from advisor.campaign.state import NOTHING, ByHand, Remark
 from advisor.flight.maneuvers.marks import Mark
 from advisor.words.problems import ConfigurationError
 

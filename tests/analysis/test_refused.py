@@ -8,8 +8,8 @@ import pytest
 from advisor.aircraft.aircraft import Aircraft
 from advisor.analysis.gap_flights import without_refused
 from advisor.flight.maneuvers.maneuver import Maneuver
-from advisor.flight.signals.instrument_finding import InstrumentFinding
 from advisor.flight.signals.record import Channel
+from advisor.flight.signals.trust import InstrumentFinding
 from advisor.words.problems import UnusableInputError
 from tests.maneuvers import changed
 from tests.simulators.nonlinear import flown

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.analysis.axes import side_comparison as side_gap
+from advisor.analysis import axis_flown as side_gap
 from advisor.gap.result import Diagnosis, Gap
 from advisor.words.problems import ConfigurationError
 

@@ -6,7 +6,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from advisor.analysis.axes.side_comparison import side_traces
+from advisor.analysis.axis_flown import side_traces
 from advisor.gap.axis import diagnosis
 from advisor.gap.result import Trace
 from tests.gap.axis.test_diagnosis import FOUND

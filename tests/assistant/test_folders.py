@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from advisor.assistant.folders import Folders, RefusedError, folders_of
+from advisor.assistant.server import Folders, RefusedError, folders_of
 
 
 @pytest.fixture

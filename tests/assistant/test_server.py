@@ -10,8 +10,7 @@ from typing import IO, TYPE_CHECKING, Any
 
 import pytest
 
-from advisor.assistant.folders import RefusedError, folders_of
-from advisor.assistant.server import Calls, part_of, written
+from advisor.assistant.server import Calls, RefusedError, folders_of, part_of, written
 
 if TYPE_CHECKING:
     from mcp import Client

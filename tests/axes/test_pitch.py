@@ -5,8 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from advisor.aircraft.aircraft import Aircraft
-from advisor.aircraft.controls import Elevator
+from advisor.aircraft.aircraft import Aircraft, Elevator
 from advisor.gap.axis.effects import axis_effects, changes_of
 from advisor.gap.axis.fit import Begun, Flying, _Motion, outputs
 from advisor.gap.axis.laws import along, axis_laws, curves_of

@@ -24,7 +24,7 @@ from advisor.batch.flight import (
 from advisor.batch.tables import aircraft_of, is_whole, mixed_up
 from advisor.cli.batch import write_reports
 from advisor.process.tasks import processes
-from advisor.process.tasks.runner import run_here
+from advisor.process.tasks.processes import run_here
 from advisor.words.problems import ConfigurationError, Problem, UnusableInputError
 from sim.effects.fitting import flight_of
 from sim.record import record

@@ -6,9 +6,8 @@ import pytest
 from advisor.aircraft.aircraft import Aircraft
 from advisor.analysis.whole_flights import read_whole
 from advisor.campaign import axis_campaign, joint_estimate
+from advisor.campaign import axis_campaign as elevator
 from advisor.campaign import campaign as whole_campaign
-from advisor.campaign.axes import elevator_campaign as elevator
-from advisor.campaign.axes import lateral_campaign
 from advisor.report.document import analysis_document
 from tests.campaign.axes.test_lateral import ended, wired
 from tests.flights import TWO, recorded
@@ -81,7 +80,7 @@ def test_instruments_that_fail_leave_the_model(monkeypatch):
 
 
 def test_a_lateral_manoeuvre_that_fails_leaves_the_other(monkeypatch):
-    monkeypatch.setattr(lateral_campaign, "estimate_axis", breaking(lateral_campaign.estimate_axis, 1))
+    monkeypatch.setattr(axis_campaign, "estimate_axis", breaking(axis_campaign.estimate_axis, 1))
     state = ended(wired())
     first, second = state.maneuvers
     assert not first.verdict.accepted

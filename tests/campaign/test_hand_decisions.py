@@ -13,8 +13,7 @@ from advisor.aircraft.aircraft import Aircraft, Markers
 from advisor.analysis.gap_flights import maneuvers_of
 from advisor.analysis.marks_file import read_by_hand, write_by_hand
 from advisor.campaign.campaign import Campaign
-from advisor.campaign.hand_decisions import NOTHING, ByHand, Remark
-from advisor.campaign.state import JudgedManeuver
+from advisor.campaign.state import NOTHING, ByHand, JudgedManeuver, Remark
 from advisor.flight.maneuvers.maneuver import Span
 from advisor.flight.maneuvers.marks import Mark
 from advisor.mavlink.logs.formats.telemetry import read_tlog

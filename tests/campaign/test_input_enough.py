@@ -3,8 +3,8 @@
 import pytest
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.campaign.being_flown import ArrivingInformation, InputEnough
 from advisor.campaign.campaign import Campaign, CampaignEvent
+from advisor.campaign.single_maneuver import ArrivingInformation, InputEnough
 from advisor.decision.arriving import Arriving
 from tests.flight.columns import Wire, fly, text
 

@@ -8,16 +8,15 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from advisor.aircraft.aircraft import Aircraft
-from advisor.aircraft.controls import Elevator, SideControl
+from advisor.aircraft.aircraft import Aircraft, Elevator, SideControl
 from advisor.campaign.campaign import Campaign
-from advisor.campaign.instruments import as_known_by, side_signs, together
+from advisor.campaign.single_maneuver import as_known_by, side_signs, together
 from advisor.campaign.state import CampaignState
 from advisor.doctor.examination import Examination
 from advisor.doctor.examiner import Examiner
 from advisor.flight.maneuvers.maneuver import Maneuver, Span
-from advisor.flight.signals.instrument_finding import InstrumentFinding
 from advisor.flight.signals.messages import Columns
+from advisor.flight.signals.trust import InstrumentFinding
 from advisor.mavlink.logs.logs import open_log
 from advisor.oem.axis.estimate import AxisEstimate
 from tests.campaign import side_builders

@@ -8,13 +8,11 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from advisor.aircraft.aircraft import Aircraft
-from advisor.aircraft.controls import Elevator
+from advisor.aircraft.aircraft import Aircraft, Elevator
+from advisor.campaign import axis_campaign as elevator
 from advisor.campaign import joint_estimate, single_maneuver
-from advisor.campaign.axes import elevator_campaign as elevator
 from advisor.campaign.campaign import Campaign
-from advisor.campaign.joint_estimate import Together
-from advisor.campaign.learning import may_learn
+from advisor.campaign.joint_estimate import Together, may_learn
 from advisor.campaign.single_maneuver import assess
 from advisor.campaign.state import CampaignState
 from advisor.flight.maneuvers.maneuver import Maneuver

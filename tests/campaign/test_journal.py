@@ -7,7 +7,7 @@ import pytest
 from advisor.aircraft.aircraft import Aircraft
 from advisor.campaign.campaign import Campaign
 from advisor.campaign.journal import Journal
-from advisor.flight.maneuvers.events import FlightBegan, ModeChanged, Rebooted, VehicleFound, VehicleSaid
+from advisor.flight.maneuvers.maneuver import FlightBegan, ModeChanged, Rebooted, VehicleFound, VehicleSaid
 from advisor.flight.vehicle.pieces import rows_between
 from advisor.flight.vehicle.vehicle import Vehicle
 from advisor.mavlink.logs.logs import open_log

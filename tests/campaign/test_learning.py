@@ -5,12 +5,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from advisor.aircraft.aircraft import Aircraft, CampaignPlan
-from advisor.aircraft.controls import Elevator
-from advisor.campaign.axes.elevator_campaign import ElevatorCampaign
-from advisor.campaign.axis_campaign import AxisCampaign
-from advisor.campaign.hand_decisions import NOTHING
-from advisor.campaign.learning import lag_said, learnt, of_another_power_on
+from advisor.aircraft.aircraft import Aircraft, CampaignPlan, Elevator
+from advisor.campaign.axis_campaign import AxisCampaign, ElevatorCampaign
+from advisor.campaign.joint_estimate import lag_said, learnt, of_another_power_on
+from advisor.campaign.state import NOTHING
 from advisor.decision.history import CandidateManeuver
 from advisor.decision.stopping import flight_test
 from advisor.oem.estimate import InstrumentEstimate

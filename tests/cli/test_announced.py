@@ -7,9 +7,8 @@ import pytest
 
 from advisor.campaign.campaign import ManeuverJudged
 from advisor.cli.live import _announce, _tell
-from advisor.decision.crew_plan import crew_plan
 from advisor.decision.inputs import StepInput
-from advisor.decision.verdict import FlightTestVerdict, NextInput
+from advisor.decision.verdict import FlightTestVerdict, NextInput, crew_plan
 from advisor.mavlink.link.announce import Announcer
 from tests.tui import flights
 

@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.campaign.hand_decisions import NOTHING
+from advisor.campaign.state import NOTHING
 from advisor.cli.screen import _campaign
 from tests.conftest import Advisor
 from tests.flights import TWO, recorded

@@ -10,9 +10,9 @@ from click.testing import CliRunner, Result
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.analysis import gap as reading
-from advisor.analysis.axes.side_comparison import SideCompared
+from advisor.analysis.axis_flown import SideCompared
+from advisor.cli import axis_gap
 from advisor.cli import group as cli
-from advisor.cli.axes import lateral_gap
 from advisor.cli.group import advisor
 from advisor.simulators.compare import Compared
 from advisor.words.problems import UnusableInputError
@@ -31,8 +31,8 @@ def axes(monkeypatch: pytest.MonkeyPatch) -> None:
     side = replace(FOUND, verdict="parameters", sentence="L_p is too small.")
     compared = SideCompared(side, SimpleNamespace(), Aircraft())  # type: ignore[arg-type]
     monkeypatch.setattr(reading, "compare_logs", lambda *_: pitch)
-    monkeypatch.setattr(lateral_gap, "read_whole", lambda *_, **__: SimpleNamespace(state=None))
-    monkeypatch.setattr(lateral_gap, "compare_side_flown", lambda *_, **__: compared)
+    monkeypatch.setattr(axis_gap, "read_whole", lambda *_, **__: SimpleNamespace(state=None))
+    monkeypatch.setattr(axis_gap, "compare_side_flown", lambda *_, **__: compared)
 
 
 def gap(*options: str) -> Result:
@@ -56,7 +56,7 @@ def test_the_text_of_pitch_is_first_and_that_of_roll_and_yaw_has_its_heading():
 @pytest.mark.usefixtures("axes")
 @pytest.mark.parametrize(
     ("room", "name", "heading"),
-    [(lateral_gap, "compare_side_flown", "Roll and yaw"), (reading, "compare_logs", "Pitch")],
+    [(axis_gap, "compare_side_flown", "Roll and yaw"), (reading, "compare_logs", "Pitch")],
 )
 def test_an_axis_without_an_answer_gives_its_reason_next_to_the_other_axis(monkeypatch, room, name, heading):
     monkeypatch.setattr(room, name, refuse)
@@ -69,7 +69,7 @@ def test_an_axis_without_an_answer_gives_its_reason_next_to_the_other_axis(monke
 @pytest.mark.usefixtures("axes")
 def test_without_an_answer_of_any_axis_the_log_cannot_be_used(monkeypatch, capsys):
     monkeypatch.setattr(reading, "compare_logs", refuse)
-    monkeypatch.setattr(lateral_gap, "compare_side_flown", refuse)
+    monkeypatch.setattr(axis_gap, "compare_side_flown", refuse)
     monkeypatch.setattr("sys.argv", ["advisor", "gap", "flight.tlog", "--axis", "both", "--json"])
     with pytest.raises(SystemExit) as ended:
         cli.main()

@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 from advisor.cli import group as cli
-from advisor.words.ascii_output import plain
+from advisor.words.problems import plain
 from tests.cli.processes import finished, flight
 
 Said = Callable[..., tuple[int, str, str]]
@@ -145,7 +145,7 @@ def test_a_curve_in_braille_is_spelled_by_the_half_of_the_cell_that_it_fills(dot
     ("stated", "asked", "posix"), [("C", None, True), ("C", "1", False), ("de", None, False)]
 )
 def test_a_user_who_states_the_posix_locale_gets_ascii_though_python_writes_utf8(stated, asked, posix):
-    words = "import sys; from advisor.words import ascii_output as a; print(a._posix())"
+    words = "import sys; from advisor.words import problems as a; print(a._posix())"
     environment = {key: value for key, value in os.environ.items() if key not in ("LC_ALL", "PYTHONUTF8")}
     environment |= {"LC_ALL": stated} | ({"PYTHONUTF8": asked} if asked else {})
     told = subprocess.run(

@@ -4,12 +4,11 @@ from pathlib import Path
 
 import pytest
 
-from advisor.flight.maneuvers.events import Notice
+from advisor.flight.maneuvers.maneuver import Notice
 from advisor.flight.stream.identity import READER
 from advisor.mavlink.logs.formats.telemetry import read_tlog
 from advisor.process.yaml_file import read_yaml
-from advisor.words.ascii_output import printable
-from advisor.words.problems import ConfigurationError, Problem
+from advisor.words.problems import ConfigurationError, Problem, printable
 from tests.cli.processes import flight
 from tests.conftest import Advisor
 from tests.mavlink.builders import START_US, Sender, dialect, record

@@ -5,17 +5,15 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from advisor.aircraft.aircraft import Aircraft, CampaignPlan, Limits
-from advisor.aircraft.controls import Elevator
+from advisor.aircraft.aircraft import Aircraft, CampaignPlan, Elevator, Limits
 from advisor.aircraft.reference import PARAMETERS
-from advisor.bundled.study.campaigns import estimate_copies
-from advisor.bundled.study.flying import Scene, follow
+from advisor.bundled.study.campaigns import Scene, estimate_copies, follow
 from advisor.decision.advice import next_input
-from advisor.decision.foresight import Instruments, expect
+from advisor.decision.conditions import share_after
 from advisor.decision.history import CandidateManeuver
 from advisor.decision.information import knowledge
 from advisor.decision.inputs import StepInput
-from advisor.decision.remaining import share_after
+from advisor.decision.prediction import Instruments, expect
 from advisor.decision.stopping import flight_test
 from advisor.decision.verdict import NO_CURE_BY_INPUT, Reason, Remaining
 from advisor.flight.maneuvers.maneuver import Maneuver, Span

@@ -6,10 +6,9 @@ from math import sqrt
 
 import pytest
 
-from advisor.aircraft.aircraft import Aircraft
-from advisor.aircraft.controls import Elevator
-from advisor.campaign import being_flown
-from advisor.campaign.being_flown import ArrivingInformation
+from advisor.aircraft.aircraft import Aircraft, Elevator
+from advisor.campaign import single_maneuver
+from advisor.campaign.single_maneuver import ArrivingInformation
 from advisor.campaign.state import LateralState
 from advisor.decision.arriving import Arriving
 from advisor.decision.arriving_errors import Known, arriving
@@ -87,7 +86,7 @@ def test_the_first_input_has_one_error_whoever_looks_how_often():
 
 def test_an_axis_whose_controls_rest_is_not_estimated(monkeypatch):
     estimated = []
-    monkeypatch.setattr(being_flown, "estimate_axis", lambda *_: estimated.append(1))
+    monkeypatch.setattr(single_maneuver, "estimate_axis", lambda *_: estimated.append(1))
     information = ArrivingInformation(Aircraft(elevator=Elevator(lag_s=0.0)))
     state = LateralState((), FlightTestVerdict("information", "continue", "", None, 100.0, None, {}), None)
     found = followed(information, 13.0, state)

@@ -7,11 +7,10 @@ import pytest
 
 from advisor.aircraft.aircraft import Aircraft, CampaignPlan
 from advisor.aircraft.reference import PARAMETERS
-from advisor.bundled.study.flying import Scene, fly_named, respond
+from advisor.bundled.study.campaigns import Scene, fly_named, respond
 from advisor.decision.axes.lateral_stop import lateral_flight_test
 from advisor.decision.change import find_change
-from advisor.decision.heard import Heard
-from advisor.decision.history import CandidateManeuver
+from advisor.decision.history import CandidateManeuver, Heard
 from advisor.decision.stopping import flight_test
 from advisor.decision.verdict import Reason
 from advisor.process.arrays import FloatArray

@@ -5,10 +5,9 @@ from dataclasses import replace
 import pytest
 
 from advisor.decision.change import Change
-from advisor.decision.conclusion import ENOUGH, Criterion, concluded
-from advisor.decision.crew_plan import crew_plan
-from advisor.decision.heard import Heard
-from advisor.decision.verdict import FlightTestVerdict, NextInput, Remaining, RuleProgress
+from advisor.decision.history import Heard
+from advisor.decision.stopping import ENOUGH, Criterion, concluded
+from advisor.decision.verdict import FlightTestVerdict, NextInput, Remaining, RuleProgress, crew_plan
 
 CHANGED = Change(2, confirmed=True, moved=(), looks_like="", sentence="M_alpha has changed.")
 

@@ -4,11 +4,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from advisor.aircraft.aircraft import Aircraft
-from advisor.aircraft.controls import Elevator
+from advisor.aircraft.aircraft import Aircraft, Elevator
 from advisor.aircraft.reference import PARAMETERS
-from advisor.decision.axes.influences import bias_by, coupled
-from advisor.decision.axes.linear_motion import PITCH, LinearMotion
+from advisor.decision.axes.influences import PITCH, LinearMotion, bias_by, coupled
 from advisor.flight.maneuvers.maneuver import Maneuver, Span
 from advisor.flight.signals.record import Channel
 from advisor.oem.estimator import estimate

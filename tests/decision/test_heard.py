@@ -7,8 +7,7 @@ import pytest
 
 from advisor.aircraft.aircraft import CampaignPlan
 from advisor.decision import stopping
-from advisor.decision.heard import Heard, revision, spoken_after
-from advisor.decision.history import CandidateManeuver
+from advisor.decision.history import CandidateManeuver, Heard, revision, spoken_after
 from advisor.decision.stopping import flight_test
 from advisor.decision.verdict import ManeuverVerdict, NextInput, Reason, Remaining
 from tests.decision.campaigns import THETA, estimate, with_change

@@ -8,7 +8,7 @@ import pytest
 
 from advisor.aircraft.aircraft import CampaignPlan
 from advisor.aircraft.reference import PARAMETERS
-from advisor.bundled.study.flying import Scene, as_maneuver, fly_named
+from advisor.bundled.study.campaigns import Scene, as_maneuver, fly_named
 from advisor.decision.history import CandidateManeuver
 from advisor.decision.information import Knowledge
 from advisor.decision.information import knowledge as known_from

@@ -8,8 +8,8 @@ import pytest
 from advisor.aircraft.aircraft import Aircraft
 from advisor.decision.axes.requirements import judge
 from advisor.flight.maneuvers.maneuver import Maneuver, Span
-from advisor.flight.signals.instrument_finding import InstrumentFinding
 from advisor.flight.signals.record import Channel
+from advisor.flight.signals.trust import InstrumentFinding
 from advisor.model.axes.lateral import LATERAL
 from advisor.oem.estimate import ChannelFit, NoEstimate
 from tests.campaign.side_builders import estimate

@@ -7,7 +7,7 @@ import pytest
 
 from advisor.aircraft.aircraft import CampaignPlan
 from advisor.aircraft.reference import PARAMETERS
-from advisor.decision.consistency import outliers
+from advisor.decision.information import outliers
 from advisor.decision.pooling import (
     DERIVATIVES,
     INTERCEPTS,

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from advisor.bundled.study.flying import Scene, as_maneuver, fly_named, follow
+from advisor.bundled.study.campaigns import Scene, as_maneuver, fly_named, follow
 from advisor.decision.history import CandidateManeuver
 from advisor.decision.pooling import DERIVATIVES
 from advisor.decision.prediction import missed_percent, predict, response_to

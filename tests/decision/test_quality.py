@@ -7,8 +7,7 @@ from io import BytesIO
 import numpy as np
 import pytest
 
-from advisor.aircraft.aircraft import Aircraft, Limits
-from advisor.aircraft.controls import Elevator
+from advisor.aircraft.aircraft import Aircraft, Elevator, Limits
 from advisor.aircraft.reference import PARAMETERS
 from advisor.decision.axes.requirements import judge, pitch_limits
 from advisor.decision.first_unit import natural_period

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from advisor.aircraft.aircraft import CampaignPlan, Rule
-from advisor.decision.course import CriterionCourse
 from advisor.decision.history import CandidateManeuver
+from advisor.decision.information import CriterionCourse
 from advisor.decision.paper_rules import scatter_percent
 from advisor.decision.stopping import flight_test
 from advisor.decision.verdict import Reason

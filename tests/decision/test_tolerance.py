@@ -6,11 +6,10 @@ import numpy as np
 import pytest
 
 from advisor.aircraft.aircraft import CampaignPlan
-from advisor.bundled.study.flying import Scene, as_maneuver, fly_named
+from advisor.bundled.study.campaigns import Scene, as_maneuver, fly_named
 from advisor.decision.history import CandidateManeuver
 from advisor.decision.pooling import DERIVATIVES
-from advisor.decision.prediction import Prediction, missed_percent, predict
-from advisor.decision.tolerance import tolerances
+from advisor.decision.prediction import Prediction, missed_percent, predict, tolerances
 from advisor.process.arrays import FloatArray
 from tests.decision.campaigns import THETA, estimate
 

@@ -5,11 +5,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from advisor.aircraft.aircraft import Aircraft
-from advisor.aircraft.controls import Elevator, ElevatorOutput
-from advisor.doctor.document import doctor_document
+from advisor.aircraft.aircraft import Aircraft, Elevator, ElevatorOutput
 from advisor.doctor.examination import Examination, Limit
 from advisor.doctor.examiner import Examiner
+from advisor.doctor.text import doctor_document
 from advisor.flight.signals.messages import Columns
 from advisor.flight.stream.stream import FlightStream
 from advisor.mavlink.logs.logs import open_log

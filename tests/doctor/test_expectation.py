@@ -5,8 +5,7 @@ import numpy as np
 import pytest
 from scipy.signal import cont2discrete
 
-from advisor.aircraft.aircraft import Aircraft
-from advisor.aircraft.controls import Elevator
+from advisor.aircraft.aircraft import Aircraft, Elevator
 from advisor.aircraft.reference import PARAMETERS
 from advisor.decision.first_unit import frequency
 from advisor.doctor.expectation import (

@@ -5,19 +5,22 @@ from math import nan
 
 import pytest
 
-from advisor.aircraft.controls import Elevator
+from advisor.aircraft.aircraft import Elevator
 from advisor.doctor.examination import ElevatorFound
 from advisor.doctor.limits import (
+    Paced,
     alpha_limits,
     clock_limits,
     clock_notes,
     company_limits,
+    cost_of_missing,
     distrust_limits,
     elevator_limits,
     path_limits,
+    rate_limits,
     repeat_limits,
+    steadiness_limits,
 )
-from advisor.doctor.pace import Paced, cost_of_missing, rate_limits, steadiness_limits
 from advisor.doctor.survey import Arrival, Clocks
 from advisor.flight.signals.track import ChannelStatus
 from advisor.flight.signals.trust import Distrust

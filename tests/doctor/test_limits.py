@@ -5,12 +5,11 @@ import re
 import numpy as np
 import pytest
 
-from advisor.aircraft.controls import Elevator
+from advisor.aircraft.aircraft import Elevator
 from advisor.decision.first_unit import frequency
 from advisor.doctor.examination import ElevatorFound, Limit
 from advisor.doctor.expectation import NOISE, TYPICAL, Assumed
-from advisor.doctor.limits import elevator_limits, loss_limits, path_limits
-from advisor.doctor.pace import Paced, rate_limits
+from advisor.doctor.limits import Paced, elevator_limits, loss_limits, path_limits, rate_limits
 from advisor.flight.vehicle.vehicle import Vehicle
 from advisor.model.short_period import ShortPeriod
 

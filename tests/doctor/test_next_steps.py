@@ -2,9 +2,8 @@
 
 import pytest
 
-from advisor.doctor.examination import Examination, Limit
+from advisor.doctor.examination import Examination, ExaminedInput, Limit, next_commands
 from advisor.doctor.expectation import NOISE, TYPICAL, Assumed
-from advisor.doctor.next_steps import ExaminedInput, next_commands
 from advisor.flight.vehicle.vehicle import Vehicle
 from tests.printed import taken
 

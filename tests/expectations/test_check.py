@@ -9,9 +9,8 @@ import pytest
 from advisor.aircraft.aircraft import Aircraft
 from advisor.expectations.check import check, junit
 from advisor.expectations.draft import draft
-from advisor.expectations.expected import Expectations, Near, mode_of
 from advisor.expectations.flown import Flown, Measured
-from advisor.expectations.read import read_expectations
+from advisor.expectations.read import Expectations, Near, mode_of, read_expectations
 from advisor.model.axes.lateral import Trim
 from advisor.model.mil_f_8785c import LevelFound
 from advisor.words.problems import Problem

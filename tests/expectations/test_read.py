@@ -5,8 +5,7 @@ from pathlib import Path
 import pytest
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.expectations.expected import Near
-from advisor.expectations.read import read_expectations
+from advisor.expectations.read import Near, read_expectations
 from advisor.words.problems import ConfigurationError
 
 AIRCRAFT = Aircraft(model={"Z_alpha": -1.0, "M_alpha": -5.0, "M_q": -1.5})

@@ -10,8 +10,7 @@ from typing import Any
 import numpy as np
 from scipy.signal import lfilter, lsim
 
-from advisor.aircraft.aircraft import Aircraft
-from advisor.aircraft.controls import Elevator
+from advisor.aircraft.aircraft import Aircraft, Elevator
 from advisor.aircraft.reference import PARAMETERS
 from advisor.analysis.gap_flights import maneuvers_of
 from advisor.flight.maneuvers.maneuver import Maneuver

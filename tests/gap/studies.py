@@ -9,8 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from advisor.aircraft.aircraft import Aircraft
-from advisor.aircraft.controls import Elevator
+from advisor.aircraft.aircraft import Aircraft, Elevator
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.gap.result import Diagnosis
 from tests.gap.diagnosed import diagnose

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.gap.candidates.catalogue import variants_for
+from advisor.gap.candidates.known import variants_for
 from advisor.gap.records.prepare import prepare
 from advisor.gap.simulator.layout import ENTRIES, INDEX
 from tests.gap.generator import UAV, Setup, fly

@@ -7,7 +7,7 @@ import pytest
 from advisor.gap.alternative import Alternative, AlternativeEvidence, Column, Contribution
 from advisor.gap.verdict.text import answers_of
 from advisor.report.facts.answers import by_flight_alone, is_turned, title_of
-from advisor.report.gap_steps import next_steps
+from advisor.report.gap_document import next_steps
 from advisor.words.certainty import as_sure
 from tests.gap.test_report_screen import diagnosis, printed
 

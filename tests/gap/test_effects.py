@@ -8,13 +8,11 @@ import pytest
 from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft_file.read import aircraft_schema, parse_aircraft
 from advisor.exports.models.improvement import ExportedServo
-from advisor.gap.candidates.catalogue import variants_for
-from advisor.gap.candidates.known import with_known
+from advisor.gap.candidates.known import variants_for, with_known
 from advisor.gap.effects import EFFECTS
 from advisor.gap.inference.posterior import stated_as
 from advisor.gap.kit.changes_between import shift_moments
-from advisor.gap.kit.effect import ANY, BLOCKS, Effect
-from advisor.gap.kit.variant import Variant
+from advisor.gap.kit.effect import ANY, BLOCKS, Effect, Variant
 from advisor.gap.records.prepare import prepare
 from advisor.gap.result import Cause, Value
 from advisor.gap.simulator.layout import DERIVATIVES, ENTRIES, INDEX

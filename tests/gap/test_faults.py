@@ -13,7 +13,7 @@ from advisor.aircraft.aircraft import Aircraft
 from advisor.analysis import gap as pitch_logs
 from advisor.analysis import whole_flights
 from advisor.analysis.gap_flights import GapFlights
-from advisor.cli.axes import lateral_gap
+from advisor.cli import axis_gap
 from advisor.gap import diagnose
 from advisor.gap.axis import comparison
 from advisor.session.diagnosis import GapTask
@@ -40,7 +40,7 @@ def read_already(monkeypatch: pytest.MonkeyPatch) -> None:
     read = SimpleNamespace(
         state=SimpleNamespace(lateral=side_state(judged(1, "aileron"), judged(2, "rudder")))
     )
-    for reader in (whole_flights, lateral_gap):
+    for reader in (whole_flights, axis_gap):
         monkeypatch.setattr(reader, "read_whole", lambda *_, **__: read)
 
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.gap.candidates.catalogue import variants_for
+from advisor.gap.candidates.known import variants_for
 from advisor.gap.fitting.fit import fit
 from advisor.gap.fitting.linear import linearise
 from advisor.gap.fitting.neighbourhood import Neighbourhood

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.gap.candidates.catalogue import variants_for
+from advisor.gap.candidates.known import variants_for
 from advisor.gap.fitting.fit import fit
 from advisor.gap.fitting.holdout import folds_for, folds_of, hold_out
 from advisor.gap.records.prepare import prepare

@@ -7,7 +7,7 @@ import pytest
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.flight.signals.record import Channel
-from advisor.gap.candidates.nuisances import INERTIA, rolls
+from advisor.gap.candidates.known import INERTIA, rolls
 from advisor.gap.records.flights import PreparedManeuver, PreparedManeuvers
 from advisor.gap.records.prepare import prepare
 from advisor.gap.search.baseline import fit_unfiltered

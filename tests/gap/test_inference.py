@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.gap.alternative import Alternative
-from advisor.gap.candidates.catalogue import variants_for
+from advisor.gap.candidates.known import variants_for
 from advisor.gap.inference.diagnose import _named_air
 from advisor.gap.inference.engine import _lead, decided, first_stage
 from advisor.gap.inference.explanation import Evidence, Explanation, Row

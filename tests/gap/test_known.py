@@ -7,8 +7,7 @@ import pytest
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft_file.estimation import mistakes_in
-from advisor.gap.candidates.catalogue import variants_for
-from advisor.gap.candidates.known import beyond_known, changes_in, together, with_known
+from advisor.gap.candidates.known import beyond_known, changes_in, together, variants_for, with_known
 from advisor.gap.effects import EFFECTS
 from advisor.gap.fitting.problem import EffectProblem, SearchPoint
 from advisor.gap.records.prepare import prepare

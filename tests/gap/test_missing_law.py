@@ -13,8 +13,7 @@ from advisor.gap.result import MissingLaw, Value
 from advisor.gap.search.baseline import fit_baseline
 from advisor.gap.verdict.missing_law import Lacking, lacking, law_in
 from advisor.report.facts.gap import law_said
-from advisor.report.gap_document import gap_document
-from advisor.report.gap_steps import next_steps
+from advisor.report.gap_document import gap_document, next_steps
 from tests.gap.generator import Setup, fly
 from tests.gap.test_report_screen import diagnosis
 

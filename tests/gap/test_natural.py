@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.gap.candidates.nuisances import AIRSPEED, GYRO
+from advisor.gap.candidates.known import AIRSPEED, GYRO
 from advisor.gap.fitting.natural import with_natural
 from advisor.gap.fitting.problem import SearchPoint
 from advisor.gap.fitting.refit import own_refitted

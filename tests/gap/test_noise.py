@@ -4,14 +4,14 @@ import numpy as np
 import pytest
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.gap.candidates.catalogue import variants_for
+from advisor.gap.candidates.known import variants_for
 from advisor.gap.fitting.fit import fit
 from advisor.gap.fitting.whitening import Filters
 from advisor.gap.noise.stamps import rates_of, stamp_jitter
 from advisor.gap.records.prepare import prepare
 from advisor.gap.search.air import moving_air
 from advisor.gap.search.baseline import fit_baseline
-from advisor.oem.driven_motion.noise import Noise
+from advisor.oem.driven_motion.setting import Noise
 from advisor.oem.short_period_motion import short_period_motion
 from advisor.oem.turbulence import Rows, cost_of
 from tests.gap.generator import Setup, fly

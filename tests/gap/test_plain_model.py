@@ -7,19 +7,17 @@ import pytest
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft.reference import Reference
-from advisor.flight.instruments.lateness import lateness_std
+from advisor.flight.instruments.delayed_fit import lateness_std
 from advisor.flight.signals.derived_alpha import DERIVED_ALPHA
-from advisor.flight.signals.instrument_finding import InstrumentFinding
-from advisor.gap.candidates.catalogue import variants_for
-from advisor.gap.candidates.known import base_entries
-from advisor.gap.candidates.nuisances import latency
+from advisor.flight.signals.trust import InstrumentFinding
+from advisor.gap.candidates.known import base_entries, latency, variants_for
 from advisor.gap.fitting.holdout import hold_out
 from advisor.gap.fitting.prior import ERROR_IF_RIGHT, ERROR_IF_WRONG
 from advisor.gap.fitting.problem import EffectProblem, SearchPoint
 from advisor.gap.inference import pitch
 from advisor.gap.inference.evidence import FlightProblem
 from advisor.gap.inference.pitch import PitchFlight
-from advisor.gap.noise.shown_gust import largest_gust
+from advisor.gap.noise.quiet import largest_gust
 from advisor.gap.records.prepare import as_stamped, prepare
 from advisor.gap.records.unmeasured_alpha import alpha_by_motion
 from advisor.gap.records.usable import outputs_of

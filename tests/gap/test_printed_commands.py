@@ -10,11 +10,11 @@ from pathlib import Path
 import pytest
 
 from advisor.cli.live import _page
-from advisor.cli.log_options import LogsAsked
+from advisor.cli.options import LogsAsked
 from advisor.flight.maneuvers.marks import Mark
 from advisor.report.facts.sizes import short
+from advisor.report.gap_document import next_steps
 from advisor.report.gap_screen import command_lines
-from advisor.report.gap_steps import next_steps
 from tests.gap.test_report_screen import diagnosis
 from tests.printed import taken
 

@@ -6,10 +6,9 @@ import numpy as np
 import pytest
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.gap.candidates.catalogue import variants_for
+from advisor.gap.candidates.known import variants_for
 from advisor.gap.fitting.linear import unit_pulse
-from advisor.gap.noise.probes import DYNAMIC, probe_blocks
-from advisor.gap.noise.quiet import in_one_maneuver, instrument_noise, unfiltered
+from advisor.gap.noise.quiet import DYNAMIC, in_one_maneuver, instrument_noise, probe_blocks, unfiltered
 from advisor.gap.records.prepare import prepare
 from advisor.gap.search.baseline import fit_baseline
 from advisor.gap.simulator.layout import INDEX, OUTPUTS

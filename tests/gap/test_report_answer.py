@@ -12,12 +12,10 @@ from advisor.gap.verdict.text import limits_of
 from advisor.report.facts.gap import changed, changes
 from advisor.report.facts.reasons import in_percent, weighed
 from advisor.report.gap_causes import decision_in_words
-from advisor.report.gap_document import gap_document
+from advisor.report.gap_document import gap_document, next_steps
 from advisor.report.gap_fidelity import peaks
-from advisor.report.gap_steps import next_steps
 from advisor.report.page.blocks import Listing
-from advisor.report.page.gap import answer, shown_causes
-from advisor.report.page.gap_picture import write_gap_picture
+from advisor.report.page.gap import answer, shown_causes, write_gap_picture
 from tests.gap.test_report_screen import DELAY, EVIDENCE, UNLIKELY, diagnosis, printed
 
 STIFFER = ComparedDerivative("M_alpha", -44.6, Value(-34.3, 0.36))

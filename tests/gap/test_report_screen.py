@@ -13,8 +13,8 @@ from advisor.gap.alternative import Alternative, AlternativeEvidence, Contributi
 from advisor.gap.result import Cause, Diagnosis, Gap, Shrink, Trace, Unseen, Value, Where, Yardsticks
 from advisor.report.facts.sizes import in_units, short, sizes_of, with_error
 from advisor.report.gap_causes import confusion_sentence
+from advisor.report.gap_document import GapStep, next_steps
 from advisor.report.gap_screen import GapScreen, command_lines
-from advisor.report.gap_steps import GapStep, next_steps
 
 CHANNELS = ("alpha", "q", "a_z", "theta")
 DELAY = Cause(

@@ -4,8 +4,7 @@ from dataclasses import replace
 
 import pytest
 
-from advisor.aircraft.aircraft import Aircraft
-from advisor.aircraft.sensors import Accelerometer, Alpha
+from advisor.aircraft.aircraft import Accelerometer, Aircraft, Alpha
 from advisor.gap.effects import EFFECTS
 from advisor.gap.result import Cause, Shrink, Value, Where
 from advisor.gap.verdict.statements import in_simulator, what

@@ -7,7 +7,7 @@ import pytest
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.flight.signals.record import Channel
-from advisor.gap.candidates.catalogue import variants_for
+from advisor.gap.candidates.known import variants_for
 from advisor.gap.records.airspeed import airspeed_on, measures_speed
 from advisor.gap.records.prepare import prepare
 from advisor.gap.records.unmeasured_speed import speed_of_the_motion

@@ -5,8 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from advisor.aircraft.aircraft import Aircraft
-from advisor.aircraft.controls import Elevator
+from advisor.aircraft.aircraft import Aircraft, Elevator
 from advisor.aircraft_file.read import parse_aircraft
 from advisor.flight.instruments.kinematics import check_alpha, combine
 from advisor.gap.diagnose import examine

@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 
 from advisor.aircraft.standard_gravity import GRAVITY_M_S2
-from advisor.flight.signals.derived_alpha import derived_alpha
-from advisor.flight.signals.motion import gravity_in_plane
+from advisor.flight.signals.derived_alpha import derived_alpha, gravity_in_plane
 
 BANKS = (-8.0, 14.0, 3.0, -20.0, 25.0)
 

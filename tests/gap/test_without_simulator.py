@@ -6,13 +6,11 @@ from io import StringIO
 import pytest
 from rich.console import Console
 
-from advisor.aircraft.aircraft import Aircraft
-from advisor.aircraft.controls import Elevator
+from advisor.aircraft.aircraft import Aircraft, Elevator
 from advisor.gap.diagnose import without_simulator
 from advisor.gap.result import GapVerdict
-from advisor.report.gap_document import gap_document
+from advisor.report.gap_document import gap_document, next_steps
 from advisor.report.gap_screen import GapScreen
-from advisor.report.gap_steps import next_steps
 from tests.gap.test_report_screen import diagnosis
 
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.flight.elevator.elevator_sign import turned
+from advisor.flight.elevator.elevator_guess import turned
 from advisor.flight.maneuvers.maneuver import CONTROLS, Maneuver
 from advisor.model.axes.lateral import LATERAL
 from advisor.oem.axis.problem import AxisProblem, lay_out

@@ -1,8 +1,7 @@
 import numpy as np
 import pytest
 
-from advisor.aircraft.aircraft import Aircraft
-from advisor.aircraft.controls import Elevator
+from advisor.aircraft.aircraft import Aircraft, Elevator
 from advisor.oem.estimator import estimate, fit_jointly
 from advisor.oem.prepare import prepare
 from advisor.oem.solution import solve

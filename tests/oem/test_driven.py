@@ -7,8 +7,7 @@ import numpy as np
 import pytest
 from scipy.linalg import expm
 
-from advisor.aircraft.aircraft import Aircraft
-from advisor.aircraft.controls import Elevator
+from advisor.aircraft.aircraft import Aircraft, Elevator
 from advisor.campaign.single_maneuver import assess, cautions_of
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.oem import estimator

@@ -1,10 +1,8 @@
 import numpy as np
 import pytest
 
-from advisor.aircraft.aircraft import Aircraft
-from advisor.aircraft.controls import Elevator
-from advisor.oem.edges import large_steps, sharpened, with_edges
-from advisor.oem.estimator import estimate
+from advisor.aircraft.aircraft import Aircraft, Elevator
+from advisor.oem.estimator import estimate, large_steps, sharpened, with_edges
 from advisor.oem.problem import OutputErrorProblem, Record
 from advisor.oem.rows import Signal
 from advisor.oem.solution import solve

@@ -5,10 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from advisor.aircraft.aircraft import Aircraft
-from advisor.aircraft.controls import Elevator
+from advisor.aircraft.aircraft import Aircraft, Elevator
 from advisor.oem.estimate import InstrumentEstimate
-from advisor.oem.findings import findings_of
+from advisor.oem.notes import findings_of
 from tests.decision.campaigns import estimate
 
 

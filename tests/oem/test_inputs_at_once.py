@@ -6,11 +6,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from advisor.aircraft.aircraft import Aircraft
-from advisor.aircraft.sensors import Alpha, Beta
+from advisor.aircraft.aircraft import Aircraft, Alpha, Beta
 from advisor.decision.axes.influences import carries_coupling
 from advisor.flight.maneuvers.maneuver import Maneuver
-from advisor.flight.maneuvers.sines import between_samples, command_of
+from advisor.flight.maneuvers.stepped_input import between_samples, command_of
 from advisor.model.axes.lateral import LATERAL
 from advisor.oem.axis.estimate import AxisEstimate
 from advisor.oem.axis.estimator import estimate_axis

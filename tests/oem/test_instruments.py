@@ -5,10 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from advisor.aircraft.aircraft import Aircraft
-from advisor.aircraft.controls import Elevator
+from advisor.aircraft.aircraft import Accelerometer, Aircraft, Alpha, Elevator
 from advisor.aircraft.reference import PARAMETERS
-from advisor.aircraft.sensors import Accelerometer, Alpha
 from advisor.flight.signals.record import Channel
 from advisor.model.axes.lateral import LATERAL
 from advisor.oem.airspeed import airspeed

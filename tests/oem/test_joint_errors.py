@@ -3,8 +3,7 @@
 import numpy as np
 import pytest
 
-from advisor.aircraft.aircraft import Aircraft
-from advisor.aircraft.controls import Elevator
+from advisor.aircraft.aircraft import Aircraft, Elevator
 from advisor.oem.estimator import estimate, estimate_jointly
 from advisor.oem.scatter_between import widened_by_scatter
 from tests.oem.builders import UAV, flown

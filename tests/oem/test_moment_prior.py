@@ -5,9 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from advisor.aircraft.aircraft import Aircraft
+from advisor.aircraft.aircraft import Aircraft, Alpha
 from advisor.aircraft.reference import Reference
-from advisor.aircraft.sensors import Alpha
 from advisor.model.outputs import SHARED
 from advisor.oem.prepare import prepare
 from advisor.oem.prior import precision

@@ -6,8 +6,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from advisor.aircraft.aircraft import Aircraft
-from advisor.aircraft.controls import Elevator
+from advisor.aircraft.aircraft import Aircraft, Elevator
 from advisor.oem import estimator
 from advisor.oem.profile import Posterior, Profile, profiled
 from benchmarks.accuracy import clean, flown

@@ -5,8 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from advisor.aircraft.aircraft import Aircraft
-from advisor.aircraft.controls import Elevator
+from advisor.aircraft.aircraft import Aircraft, Elevator
 from advisor.model.outputs import N_PARAMETERS
 from advisor.model.response import respond
 from advisor.oem.instrument_fit import fit_instruments

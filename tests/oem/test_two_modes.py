@@ -6,8 +6,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from advisor.aircraft.aircraft import Aircraft
-from advisor.aircraft.sensors import Accelerometer, Alpha
+from advisor.aircraft.aircraft import Accelerometer, Aircraft, Alpha
 from advisor.model.outputs import SHARED
 from advisor.oem import instrument_fit
 from advisor.oem.estimator import fit_jointly

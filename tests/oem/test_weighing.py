@@ -3,11 +3,10 @@ import pytest
 from scipy.linalg import toeplitz
 
 from advisor.oem.colour import Colour
-from advisor.oem.covariance import cramer_rao
+from advisor.oem.covariance import Weighing, cramer_rao
 from advisor.oem.problem import OutputErrorProblem, Record
 from advisor.oem.rows import Signal
 from advisor.oem.solution import solve
-from advisor.oem.weighing import Weighing
 from advisor.oem.whitening import Whitening
 from benchmarks.accuracy import clean, flown, noise
 

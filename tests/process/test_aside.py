@@ -6,9 +6,9 @@ from time import monotonic
 import pytest
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.campaign.axes.elevator_campaign import ElevatorCampaign
-from advisor.campaign.being_flown import ArrivingInformation
+from advisor.campaign.axis_campaign import ElevatorCampaign
 from advisor.campaign.campaign import Campaign, ManeuverJudged
+from advisor.campaign.single_maneuver import ArrivingInformation
 from advisor.decision.arriving import Arriving
 from advisor.mavlink.logs.logs import open_log
 from advisor.process.aside import Aside

@@ -12,7 +12,7 @@ import pytest
 
 from advisor.aircraft_file.read import load_aircraft
 from advisor.cli import group as cli
-from advisor.cli.log_options import LogsAsked
+from advisor.cli.options import LogsAsked
 from advisor.cli.page_content import gather
 from advisor.report.page.blocks import Content
 from tests.flights import FOUR, TWO, recorded

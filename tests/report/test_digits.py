@@ -7,11 +7,11 @@ from types import SimpleNamespace
 import pytest
 
 from advisor.oem.coefficients import Coefficient
-from advisor.oem.findings import value_in_words
+from advisor.oem.notes import value_in_words
 from advisor.report.facts.estimates import EstimatedParameter, estimated_parameter
 from advisor.report.qualities import quality_lines
-from advisor.report.table import joint_of
-from advisor.words.digits import with_half
+from advisor.report.text import joint_of
+from advisor.words.quantities import with_half
 from tests.decision.campaigns import estimate
 
 

@@ -28,11 +28,11 @@ from advisor.report.page.blocks import Paragraph
 from advisor.report.page.gap import answer
 from advisor.report.text import AnalysisText
 from advisor.tui.advice import advise
-from advisor.tui.panes.criterion import _rows as criterion_rows
+from advisor.tui.panes.courses import _rows as criterion_rows
 from advisor.tui.panes.gap import answer_rows
 from advisor.tui.settings import Settings
-from advisor.words.digits import with_half
 from advisor.words.quantities import PARAMETERS as QUANTITIES
+from advisor.words.quantities import with_half
 from tests.campaign.side_builders import judged as side_judged
 from tests.campaign.side_builders import state as side_state
 from tests.campaign.states import changed

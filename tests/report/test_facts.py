@@ -11,9 +11,8 @@ from advisor.gap.verdict.statements import what
 from advisor.oem.estimate import InstrumentEstimate
 from advisor.oem.notes import FOR_THE_FILE
 from advisor.report.facts.estimates import Fact, instrument_facts, of_all, of_one
-from advisor.report.gap_document import gap_document
-from advisor.report.gap_steps import next_steps
-from advisor.report.page.appendix import entered_once
+from advisor.report.gap_document import gap_document, next_steps
+from advisor.report.page.render import entered_once
 from tests.campaign.states import changed
 from tests.decision.campaigns import estimate
 from tests.gap.test_report_answer import DERIVATIVES

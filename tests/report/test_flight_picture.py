@@ -5,8 +5,8 @@ from types import SimpleNamespace
 
 import numpy as np
 
-from advisor.flight.signals.power_on import PowerOn
 from advisor.flight.signals.record import Channel
+from advisor.flight.signals.track import PowerOn
 from advisor.report.page.flight_picture import flight_picture, thinned
 from tests.campaign.side_builders import judged, state
 

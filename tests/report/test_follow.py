@@ -8,12 +8,11 @@ from typing import Any, cast
 import pytest
 
 from advisor.campaign.campaign import Campaign, ManeuverJudged
-from advisor.decision.conclusion import ENOUGH
-from advisor.decision.crew_plan import crew_plan
-from advisor.decision.verdict import FlightTestVerdict, NextInput
-from advisor.flight.maneuvers.events import DataAgain, NoData
-from advisor.report import follow as module
-from advisor.report.follow import follow
+from advisor.decision.stopping import ENOUGH
+from advisor.decision.verdict import FlightTestVerdict, NextInput, crew_plan
+from advisor.flight.maneuvers.maneuver import DataAgain, NoData
+from advisor.report import text as module
+from advisor.report.text import follow
 from advisor.words.problems import Problem
 
 SLOW = NoData((Problem("rate", "ATTITUDE arrives at 4.0 Hz.", "Ask for 50 Hz."),))

@@ -7,13 +7,14 @@ import pytest
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.cli import page_content
-from advisor.report.axes.lateral_document import lateral_document, side_quality_lines
+from advisor.report.document import lateral_document
 from advisor.report.gap_document import axis_document
-from advisor.report.page.axes.lateral_section import lateral
 from advisor.report.page.blocks import Gallery, Listing, Paragraph
+from advisor.report.page.flying_qualities import lateral
 from advisor.report.page.gap import gap
-from advisor.report.page.headline import headline
-from advisor.report.table import Table
+from advisor.report.page.render import headline
+from advisor.report.qualities import side_quality_lines
+from advisor.report.text import Table
 from tests.campaign.side_builders import AIRCRAFT, estimate, judged, state
 from tests.campaign.states import changed
 from tests.gap.axis.test_diagnosis import FOUND

@@ -8,7 +8,7 @@ import pytest
 from advisor.aircraft.reference import PARAMETERS
 from advisor.report.page.render import page
 from advisor.report.qualities import coefficients_of, qualities_of, quality_lines
-from advisor.words.digits import clock, with_half
+from advisor.words.quantities import clock, with_half
 from tests.report.conftest import Reported
 from tests.report.page_reader import with_interval
 

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.cli.log_options import LogsAsked
+from advisor.cli.options import LogsAsked
 from advisor.cli.page_content import gather
 from advisor.report.page import drawing
 from advisor.report.page.render import page

@@ -6,9 +6,8 @@ import numpy as np
 import pytest
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.analysis.log_series import LogSeries
-from advisor.flight.maneuvers.events import ManeuverFlown, SideManeuverFlown
-from advisor.flight.maneuvers.maneuver import Maneuver
+from advisor.analysis.marks_file import LogSeries
+from advisor.flight.maneuvers.maneuver import Maneuver, ManeuverFlown, SideManeuverFlown
 from advisor.flight.stream.stream import FlightStream
 from advisor.scripts.ardupilot import ardupilot_script
 from advisor.scripts.table import FlightLimits, Source, script_table

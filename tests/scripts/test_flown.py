@@ -7,10 +7,8 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from advisor.aircraft.aircraft import Aircraft
-from advisor.aircraft.controls import Elevator, ElevatorOutput, SideControl
-from advisor.flight.elevator.axes.side_controls import find_side_control
-from advisor.flight.elevator.elevator_outputs import find_elevator
+from advisor.aircraft.aircraft import Aircraft, Elevator, ElevatorOutput, SideControl
+from advisor.flight.elevator.elevator_outputs import find_elevator, find_side_control
 from advisor.flight.vehicle.ardupilot_wiring import ardupilot_wiring
 from advisor.flight.vehicle.surfaces import Surface
 from advisor.scripts.ardupilot import ardupilot_script

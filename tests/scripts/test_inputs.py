@@ -5,8 +5,7 @@ from math import pi
 import numpy as np
 import pytest
 
-from advisor.aircraft.aircraft import Aircraft, Limits
-from advisor.aircraft.controls import Elevator
+from advisor.aircraft.aircraft import Aircraft, Elevator, Limits
 from advisor.flight.vehicle.mixers import A_TAIL, ELEVONS, FLAPERONS, SPOILERS, V_TAIL, Role
 from advisor.scripts.inputs import CONTROLS, NAMES, STEPPED, disjoint_harmonics, input_of, multisine
 from advisor.scripts.pace import pace_of

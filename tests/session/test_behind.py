@@ -13,21 +13,19 @@ import pytest
 from pymavlink.dialects.v20 import ardupilotmega as dialect
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.campaign.hand_decisions import ByHand
+from advisor.campaign.state import ByHand
 from advisor.cli import narrator
 from advisor.mavlink.link.health import LinkStatistics
-from advisor.mavlink.link.keeping import Keeping, new_door
+from advisor.mavlink.link.kept_link import Keeping, new_door
 from advisor.mavlink.link.link import MotionNow
 from advisor.mavlink.link.link_process import LinkProcess
 from advisor.mavlink.link.observer import LinkObserver
 from advisor.mavlink.wire.framing import CRC_EXTRA, FrameCutter
 from advisor.session import live
 from advisor.session.behind import BehindTeller
-from advisor.session.conducting import SessionReport
+from advisor.session.conducting import LinkHealth, SessionReport, report_before_first
 from advisor.session.live import LinkSource, recording_line, renewed
 from advisor.session.remote import ConductorTask, RemoteConductor
-from advisor.session.source import LinkHealth
-from advisor.session.view import report_before_first
 from advisor.tui.advice import advise
 from advisor.tui.panes.pilot import flying_in_words
 from advisor.tui.screens.pilot import limits_now

@@ -8,8 +8,7 @@ from math import inf
 import numpy as np
 import pytest
 
-from advisor.campaign.hand_decisions import ByHand, HandDecision
-from advisor.campaign.state import CampaignState, JudgedManeuver
+from advisor.campaign.state import ByHand, CampaignState, HandDecision, JudgedManeuver
 from advisor.flight.signals.messages import Columns
 from advisor.session.conducting import SessionReport
 from advisor.session.conductor import Conductor

@@ -11,8 +11,7 @@ from advisor.aircraft.aircraft import Aircraft
 from advisor.analysis.marks_file import read_by_hand
 from advisor.bundled.demo import Demonstration
 from advisor.campaign.campaign import Campaign
-from advisor.campaign.hand_decisions import NOTHING, ByHand
-from advisor.campaign.state import CampaignState
+from advisor.campaign.state import NOTHING, ByHand, CampaignState
 from advisor.flight.vehicle.pieces import rows_between
 from advisor.mavlink.logs.logs import open_log
 from advisor.oem.estimate import Estimate

@@ -7,12 +7,11 @@ from dataclasses import fields, replace
 import numpy as np
 import pytest
 
-from advisor.campaign.hand_decisions import HandDecision
+from advisor.campaign.state import HandDecision
 from advisor.oem.estimate import Estimate
-from advisor.session.conducting import Conducting, SessionReport, changes
+from advisor.session.conducting import Conducting, LinkHealth, Playback, SessionReport, changes
 from advisor.session.conductor import Conductor
 from advisor.session.remote import ConductorTask, RemoteConductor
-from advisor.session.source import LinkHealth, Playback
 from advisor.tui.app import AdvisorApp
 from advisor.tui.screens.engineer import EngineerScreen
 from advisor.words.problems import UnusableInputError

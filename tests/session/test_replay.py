@@ -13,12 +13,11 @@ from hypothesis import strategies as st
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.analysis.marks_file import path_beside, read_by_hand
-from advisor.campaign.hand_decisions import NOTHING, Remark
+from advisor.campaign.state import NOTHING, Remark
 from advisor.flight.signals.messages import Columns
+from advisor.session.conducting import Tempo, view_before_first
 from advisor.session.replay import LogPlayer
-from advisor.session.source import Tempo
 from advisor.session.timeline import DataBegin, Goal, Position, Timeline
-from advisor.session.view import view_before_first
 from tests.tui.stand_ins import columns
 
 

@@ -4,8 +4,8 @@ from pathlib import Path
 
 import numpy as np
 
-from advisor.analysis.log_series import LogSeries
-from advisor.session.resumed import stretches
+from advisor.analysis.marks_file import LogSeries
+from advisor.session.replay import stretches
 from tests.mavlink.ardupilot.test_autopilot_logs import dataflash_flight
 
 

@@ -12,7 +12,7 @@ from advisor.analysis import gap as gap_of_logs
 from advisor.analysis.gap_flights import GapFlights
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.flight.signals.record import Channel
-from advisor.flight.signals.true_airspeed import standard_pressure
+from advisor.flight.signals.track import standard_pressure
 from advisor.gap.records.prepare import prepare
 from advisor.gap.simulator.layout import HEIGHT
 from advisor.simulators.air import by_the_motion, standard_heights

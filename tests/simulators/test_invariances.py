@@ -12,7 +12,7 @@ from advisor.aircraft.aircraft import Aircraft, TableColumns
 from advisor.analysis.gap import _simulator_at_true_speed
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.gap.result import Diagnosis
-from advisor.mavlink.logs.tables.quantities import quantities_of
+from advisor.mavlink.logs.formats.table import quantities_of
 from advisor.simulators.compare import compare
 from advisor.simulators.linear import LinearSimulator
 from advisor.simulators.protocol import Condition, Inputs

@@ -5,9 +5,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 import pytest
 
-from advisor.aircraft.aircraft import Aircraft
-from advisor.aircraft.controls import SideControl
-from advisor.aircraft.sensors import Beta
+from advisor.aircraft.aircraft import Aircraft, Beta, SideControl
 from advisor.flight.signals.record import Channel
 from advisor.oem.rows import Signal
 from advisor.oem.surface import Servo

@@ -6,13 +6,12 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from advisor.aircraft.aircraft import Aircraft
-from advisor.aircraft.controls import Elevator
+from advisor.aircraft.aircraft import Aircraft, Elevator
 from advisor.flight.signals.record import Channel
 from advisor.gap.records.prepare import prepare
 from advisor.gap.result import TrimDifference, Value
 from advisor.gap.simulator.layout import DERIVATIVES
-from advisor.gap.uncatalogued.airspeed_scale import AirspeedScale
+from advisor.gap.uncatalogued.weight_check import AirspeedScale
 from advisor.simulators.compare import compare
 from advisor.simulators.protocol import Condition, Inputs
 from advisor.simulators.static_errors import (

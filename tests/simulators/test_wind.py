@@ -6,12 +6,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from advisor.aircraft.aircraft import Aircraft
-from advisor.aircraft.controls import Elevator
+from advisor.aircraft.aircraft import Aircraft, Elevator
 from advisor.aircraft.reference import FmuTrim
 from advisor.flight.signals.channels import quantities
+from advisor.flight.signals.derived_alpha import along_heading
 from advisor.flight.signals.messages import Columns
-from advisor.flight.signals.motion import along_heading
 from advisor.flight.signals.record import Channel
 from advisor.gap.records.prepare import prepare
 from advisor.mavlink.logs.formats.dataflash import read_dataflash

@@ -13,10 +13,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.campaign.hand_decisions import NOTHING, ByHand
+from advisor.campaign.state import NOTHING, ByHand
 from advisor.flight.signals.messages import Columns
+from advisor.session.conducting import LinkHealth
 from advisor.session.replay import LogPlayer
-from advisor.session.source import LinkHealth
 from advisor.words.problems import UnusableInputError
 from tests.tui import flights
 from tests.tui.stand_ins import HandFedSource, StagedCampaign

@@ -21,11 +21,11 @@ from advisor.decision.verdict import (
     RuleResult,
 )
 from advisor.flight.maneuvers.maneuver import Maneuver, Span
-from advisor.flight.signals.power_on import Course
 from advisor.flight.signals.record import Channel
+from advisor.flight.signals.track import Course
 from advisor.flight.vehicle.vehicle import Vehicle
 from advisor.oem.estimate import ChannelFit, Estimate, NoEstimate
-from advisor.words.digits import clock
+from advisor.words.quantities import clock
 
 TRUTH = np.array([0.04, -3.2, 0.02, -0.21, 0.47, -48.0, -4.2, -101.0])
 SPREAD = np.array([0.004, 0.15, 0.01, 0.05, 0.05, 1.9, 0.3, 4.0])

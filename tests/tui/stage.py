@@ -14,11 +14,11 @@ from textual.pilot import Pilot
 from textual.widget import Widget
 
 from advisor.campaign.state import CampaignState
+from advisor.session.conducting import Source, Tempo
 from advisor.session.conductor import Conductor
 from advisor.session.replay import LogPlayer
-from advisor.session.source import Source, Tempo
 from advisor.tui.app import AdvisorApp
-from advisor.tui.panes.lines import Lines
+from advisor.tui.panes.pane import Lines
 from advisor.tui.settings import Settings
 from tests.tui import flights
 from tests.tui.stand_ins import HandFedSource, StagedCampaign

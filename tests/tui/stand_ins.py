@@ -7,12 +7,11 @@ from queue import Empty, SimpleQueue
 import numpy as np
 
 from advisor.campaign.engineer import Engineer
-from advisor.campaign.hand_decisions import NOTHING, ByHand, Remark
-from advisor.campaign.state import CampaignState, JudgedManeuver
+from advisor.campaign.state import NOTHING, ByHand, CampaignState, JudgedManeuver, Remark
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.flight.maneuvers.marks import Mark
 from advisor.flight.signals.messages import Columns
-from advisor.session.source import LinkHealth, LinkRequest
+from advisor.session.conducting import LinkHealth, LinkRequest
 from advisor.words.axes import AxisName
 from advisor.words.problems import Problem
 from tests.campaign.states import changed

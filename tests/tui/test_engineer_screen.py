@@ -4,11 +4,11 @@ import pytest
 from textual.containers import VerticalScroll
 from textual.widgets import DataTable, Input
 
-from advisor.tui.panes.criterion import Criterion
+from advisor.tui.panes.courses import Criterion
 from advisor.tui.panes.fit import Fit
 from advisor.tui.panes.live import Live
 from advisor.tui.panes.parameters import ParametersPane
-from advisor.tui.plot.widget import Plot
+from advisor.tui.plot.painting import Plot
 from advisor.tui.settings import Settings
 from tests.campaign.states import changed
 from tests.tui import flights

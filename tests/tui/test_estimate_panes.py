@@ -9,12 +9,11 @@ from rich.text import Text
 
 from advisor.aircraft.reference import PARAMETERS
 from advisor.campaign.state import CampaignState
-from advisor.session.view import View, view_before_first
+from advisor.session.conducting import View, view_before_first
 from advisor.tui.panes.correlation import Correlation
-from advisor.tui.panes.courses import Courses, course, history_chart
-from advisor.tui.panes.criterion import Criterion
+from advisor.tui.panes.courses import Courses, Criterion, course, history_chart
 from advisor.tui.panes.residuals import Residuals
-from advisor.tui.plot.widget import Plot
+from advisor.tui.plot.painting import Plot
 from advisor.tui.screens.engineer import PANES
 from advisor.tui.settings import Settings
 from tests.campaign.states import changed

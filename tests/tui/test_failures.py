@@ -4,9 +4,9 @@ import asyncio
 
 import pytest
 
-from advisor.session.source import LinkHealth
+from advisor.session.conducting import LinkHealth
 from advisor.tui.panes.pilot import BigWord
-from advisor.tui.panes.status_line import Alarm
+from advisor.tui.screens.face import Alarm
 from advisor.words.problems import Problem, UnusableInputError
 from tests.tui import flights
 from tests.tui.stage import stage

@@ -6,7 +6,7 @@ from io import StringIO
 import numpy as np
 import pytest
 
-from advisor.tui.panes.fit_charts import (
+from advisor.tui.panes.fit import (
     ELEVATOR_AXIS,
     extent,
     fit_chart,

@@ -12,7 +12,7 @@ from advisor.process.parts import FailedPart
 from advisor.report.gap_document import gap_document
 from advisor.session.diagnosis import Document, GapTask, diagnose_elsewhere
 from advisor.tui.panes import gap as pane
-from advisor.tui.plot.widget import Plot
+from advisor.tui.plot.painting import Plot
 from advisor.tui.settings import Settings
 from tests.analysis.test_side_traces import ANSWERED
 from tests.campaign.side_builders import judged as side_judged

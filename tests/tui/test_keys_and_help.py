@@ -6,17 +6,16 @@ import pytest
 from textual.command import CommandPalette
 from textual.widgets import DataTable, Static
 
+from advisor.session.conducting import LinkHealth
 from advisor.session.replay import LogPlayer
-from advisor.session.source import LinkHealth
 from advisor.tui import keys
 from advisor.tui.explaining import Explain, keys_at_hand
 from advisor.tui.panes.pane import Pane
-from advisor.tui.panes.status_line import KeysLine, ReplayBar
 from advisor.tui.screens.engineer import PANES, EngineerScreen, PaneTabs
-from advisor.tui.screens.face import Ask
+from advisor.tui.screens.face import Ask, KeysLine, ReplayBar
 from advisor.tui.screens.pilot import PilotScreen
 from advisor.tui.settings import Settings
-from advisor.words.digits import clock
+from advisor.words.quantities import clock
 from tests.tui import flights
 from tests.tui.stage import Stage, stage
 from tests.tui.stand_ins import HandFedSource, columns

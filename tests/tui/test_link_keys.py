@@ -4,11 +4,11 @@ from dataclasses import replace
 
 from advisor.flight.elevator.elevator_guess import Guess
 from advisor.flight.vehicle.vehicle import Vehicle
+from advisor.session.conducting import LinkHealth, LinkRequest
 from advisor.session.replay import LogPlayer
-from advisor.session.source import LinkHealth, LinkRequest
 from advisor.tui.explaining import keys_at_hand
 from advisor.tui.panes.pilot import BigWord
-from advisor.tui.panes.status_line import KeysLine
+from advisor.tui.screens.face import KeysLine
 from advisor.tui.settings import Settings
 from advisor.words.problems import Problem
 from tests.tui import flights

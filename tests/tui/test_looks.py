@@ -9,10 +9,9 @@ from textual.theme import Theme
 from textual.widgets import DataTable, Static
 
 from advisor.tui import keys
-from advisor.tui.panes.lines import Lines
-from advisor.tui.panes.pane import Pane
+from advisor.tui.panes.pane import Lines, Pane
 from advisor.tui.panes.pilot import BigWord
-from advisor.tui.plot.widget import Plot
+from advisor.tui.plot.painting import Plot
 from advisor.tui.settings import Settings
 from advisor.tui.themes import NAMES, THEMES
 from tests.tui import flights

@@ -11,14 +11,14 @@ import pytest
 from advisor.aircraft.aircraft import Aircraft
 from advisor.analysis.marks_file import keep_by_hand, path_beside, read_by_hand
 from advisor.campaign.campaign import Campaign
-from advisor.campaign.hand_decisions import ByHand
+from advisor.campaign.state import ByHand
 from advisor.mavlink.logs.logs import open_log
+from advisor.session.conducting import Tempo
 from advisor.session.conductor import Conductor
 from advisor.session.live import LinkSource
 from advisor.session.replay import LogPlayer
-from advisor.session.source import Tempo
 from advisor.tui.app import AdvisorApp
-from advisor.tui.panes.status_line import KeysLine
+from advisor.tui.screens.face import KeysLine
 from advisor.tui.settings import Settings
 from tests.flights import TWO, recorded
 from tests.tui import flights

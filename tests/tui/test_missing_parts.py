@@ -2,7 +2,7 @@
 
 from typing import NoReturn
 
-from advisor.session.view import View
+from advisor.session.conducting import View
 from advisor.tui.panes.pilot import BigWord
 from tests.tui import flights
 from tests.tui.stage import stage

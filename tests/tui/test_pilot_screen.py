@@ -7,12 +7,11 @@ import pytest
 from advisor.campaign.state import CampaignState
 from advisor.decision.arriving import Arriving
 from advisor.decision.inputs import StepInput
-from advisor.flight.signals.instrument_finding import InstrumentFinding
+from advisor.flight.signals.trust import InstrumentFinding
 from advisor.report.facts.answers import decisions
-from advisor.session.source import LinkHealth
-from advisor.session.view import View
+from advisor.session.conducting import LinkHealth, View
 from advisor.tui.advice import advise
-from advisor.tui.panes.criterion import share_of_limit
+from advisor.tui.panes.courses import share_of_limit
 from advisor.tui.panes.last_verdict import for_the_pilot
 from advisor.tui.panes.pilot import BigWord, flying_in_words, how_far
 from advisor.tui.screens.pilot import limits_now

@@ -8,11 +8,10 @@ from textual.css import stylesheet
 from textual.events import Key
 from textual.widget import Widget
 
-from advisor.session.conducting import SessionReport
-from advisor.session.view import View
+from advisor.session.conducting import SessionReport, View
 from advisor.tui import app as application
 from advisor.tui.app import Garbage, Sheets
-from advisor.tui.plot.widget import Plot
+from advisor.tui.plot.painting import Plot
 from advisor.tui.settings import Settings
 from advisor.tui.themes import NAMES, THEMES
 from benchmarks.keys import says

@@ -3,7 +3,7 @@
 from textual.events import MouseScrollUp
 
 from advisor.tui.panes.fit import Fit
-from advisor.tui.plot.widget import Plot
+from advisor.tui.plot.painting import Plot
 from advisor.tui.settings import Settings
 from tests.tui import flights
 from tests.tui.stage import Stage, stage

@@ -5,7 +5,7 @@ import pytest
 from advisor.aircraft.aircraft import Aircraft
 from advisor.bundled.demo import Demonstration
 from advisor.campaign.campaign import Campaign
-from advisor.campaign.hand_decisions import ByHand
+from advisor.campaign.state import ByHand
 from advisor.session.conductor import Conductor
 from advisor.session.live import LinkSource
 from advisor.tui.app import AdvisorApp

@@ -2,10 +2,10 @@
 
 import numpy as np
 
-from advisor.campaign.hand_decisions import HandDecision
+from advisor.campaign.state import HandDecision
 from advisor.decision.inputs import StepInput
 from advisor.decision.verdict import NextInput
-from advisor.session.view import view_sideways
+from advisor.session.conducting import view_sideways
 from advisor.tui.advice import advise
 from advisor.tui.settings import Settings
 from advisor.tui.stick_drawing import drawn

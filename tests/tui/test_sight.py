@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from advisor.tui.plot.window import Sight, Window, nearest
+from advisor.tui.plot.axis import Sight, Window, nearest
 
 STAMPS = np.arange(-2.0, 8.01, 0.02)
 WHOLE = Window.whole(-2.0, 8.0)

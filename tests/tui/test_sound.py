@@ -5,8 +5,7 @@ from dataclasses import replace
 import pytest
 
 from advisor.mavlink.link.health import LinkStatistics
-from advisor.session.source import LinkHealth, Tempo
-from advisor.session.view import View
+from advisor.session.conducting import LinkHealth, Tempo, View
 from advisor.tui.sound import Sound
 from tests.tui import flights
 from tests.tui.stage import stage

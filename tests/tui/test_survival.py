@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from advisor.campaign.hand_decisions import ByHand
+from advisor.campaign.state import ByHand
 from advisor.cli import narrator
 from advisor.process import liveness
 from advisor.session.conducting import SessionReport

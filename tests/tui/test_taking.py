@@ -10,8 +10,7 @@ import numpy as np
 import pytest
 from textual.app import App
 
-from advisor.session.source import Tempo
-from advisor.session.view import view_before_first
+from advisor.session.conducting import Tempo, view_before_first
 from advisor.tui.panes.courses import Courses
 from advisor.tui.panes.fit import Fit
 from advisor.tui.panes.pane import TableRows

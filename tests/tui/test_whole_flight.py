@@ -4,9 +4,9 @@ from dataclasses import replace
 
 import pytest
 
+from advisor.session.conducting import Playback
 from advisor.session.replay import LogPlayer
-from advisor.session.source import Playback
-from advisor.tui.plot.widget import Plot
+from advisor.tui.plot.painting import Plot
 from advisor.tui.settings import Settings
 from tests.campaign.side_builders import judged as side_judged
 from tests.campaign.side_builders import state as side_state

@@ -9,8 +9,7 @@ from advisor.aircraft.reference import PARAMETERS as NAMES
 from advisor.tui.advice import Word
 from advisor.tui.block_letters import block_letters
 from advisor.tui.panes.pilot import bar
-from advisor.words.digits import with_half
-from advisor.words.quantities import PARAMETERS, channel
+from advisor.words.quantities import PARAMETERS, channel, with_half
 
 
 def test_every_parameter_has_a_symbol_and_a_unit():

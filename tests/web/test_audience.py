@@ -8,10 +8,9 @@ from threading import Thread
 
 import pytest
 
-from advisor.campaign.hand_decisions import HandDecision
-from advisor.session.conducting import SessionReport
+from advisor.campaign.state import HandDecision
+from advisor.session.conducting import LinkRequest, SessionReport
 from advisor.session.conductor import Conductor
-from advisor.session.source import LinkRequest
 from advisor.tui.explaining import keys_at_hand
 from advisor.tui.settings import Settings
 from advisor.web import viewer

@@ -13,7 +13,7 @@ import pytest
 from aiohttp import ClientSession, web
 from textual_serve.download_manager import DownloadManager
 
-from advisor.mavlink.link.keeping import Door
+from advisor.mavlink.link.kept_link import Door
 from advisor.web import access
 from advisor.web.access import VARIABLE, Access, checked_origin, read_password
 from advisor.web.site import PageProcess, Site, WebServer, listening

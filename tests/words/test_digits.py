@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from advisor.cli.options import parse_mark
-from advisor.words.digits import clock, distinct_texts, maneuvers_said, stretch
 from advisor.words.problems import ConfigurationError
+from advisor.words.quantities import clock, distinct_texts, maneuvers_said, stretch
 
 
 @pytest.mark.parametrize(

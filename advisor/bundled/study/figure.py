@@ -8,8 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from advisor.aircraft.aircraft import Rule
-from advisor.bundled.study.campaigns import RuleOutcome
-from advisor.bundled.study.paper import ORDER
+from advisor.bundled.study.campaigns import ORDER, RuleOutcome
 from advisor.process.atomic_file import write_atomically
 from advisor.words.problems import ConfigurationError
 

@@ -6,10 +6,17 @@ from itertools import product
 from typing import Generic, TypeVar
 
 from advisor.bundled.study import text
-from advisor.bundled.study.campaigns import RULES, CampaignBlock, Outcomes, judge, table_blocks
+from advisor.bundled.study.campaigns import (
+    NOISE_PERCENT,
+    RULES,
+    CampaignBlock,
+    NoiseReading,
+    Outcomes,
+    Scene,
+    judge,
+    table_blocks,
+)
 from advisor.bundled.study.figure import Curve, curve, in_terminal
-from advisor.bundled.study.flying import NoiseReading, Scene
-from advisor.bundled.study.paper import NOISE_PERCENT
 from advisor.bundled.study.table import as_document, row
 
 T = TypeVar("T")

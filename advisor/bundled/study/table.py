@@ -7,8 +7,7 @@ import numpy as np
 
 from advisor.aircraft.aircraft import Rule
 from advisor.aircraft.reference import PARAMETERS
-from advisor.bundled.study.campaigns import RuleOutcome
-from advisor.bundled.study.paper import TABLE_1, PaperRow
+from advisor.bundled.study.campaigns import TABLE_1, PaperRow, RuleOutcome
 from advisor.process.arrays import FloatArray
 
 

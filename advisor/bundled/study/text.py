@@ -9,7 +9,7 @@ import numpy as np
 
 from advisor.aircraft.aircraft import CampaignPlan
 from advisor.aircraft.reference import PARAMETERS
-from advisor.bundled.study.flying import NOISE_READINGS, NoiseReading, Scene
+from advisor.bundled.study.campaigns import NOISE_READINGS, NoiseReading, Scene
 from advisor.bundled.study.table import Row
 from advisor.words.quantities import symbol
 

@@ -19,7 +19,6 @@ from typing import Literal
 
 import numpy as np
 
-from advisor.decision.held_inputs import held_response
 from advisor.model.axes.lateral import LATERAL, Trim, modes_of, state_matrix
 from advisor.model.mil_f_8785c import CATEGORIES, Category, LevelFound, Measured, Range, assess
 from advisor.oem.flying_qualities import Quality
@@ -208,5 +207,10 @@ def peak_roll_rate(theta: FloatArray, a: FloatArray, aileron_rad: float, step_s:
     """
     value: Mapping[str, float] = dict(zip(LATERAL.names.reported, theta.tolist(), strict=True))
     b = np.array([value["Y_delta_a"], value["L_delta_a"], value["N_delta_a"], 0.0])
-    p = held_response(a, b, np.full(_STEPS, aileron_rad), step_s / _STEPS)[:, 1]
+    from scipy.signal import lsim  # not on the start path
+
+    t, roll_rate = np.linspace(0.0, step_s, _STEPS + 1), np.eye(4)[[1]]
+    p = lsim((a, b[:, None], roll_rate, np.zeros((1, 1))), np.full(_STEPS + 1, aileron_rad), t, interp=False)[
+        1
+    ]
     return float(p[np.argmax(np.abs(p))])

@@ -30,13 +30,12 @@ from advisor.decision.quality import WIDEST_PREDICTION_PERCENT, Examined, object
 from advisor.decision.response import Response
 from advisor.decision.verdict import Reason
 from advisor.flight.maneuvers.maneuver import Maneuver
-from advisor.flight.signals.robust import rms
+from advisor.flight.signals.record import rms
 from advisor.oem.axis.estimate import AxisEstimate
 from advisor.oem.estimate import Estimate, NoEstimate
-from advisor.oem.findings import findings_of
+from advisor.oem.notes import findings_of
 from advisor.words.axes import AxisName
-from advisor.words.digits import distinct_texts
-from advisor.words.quantiles import NORMAL_95
+from advisor.words.quantities import NORMAL_95, distinct_texts
 
 BANK_DEG = 45.0
 """Largest bank in a lateral manoeuvre, deg, unless the aircraft file has a smaller limit."""

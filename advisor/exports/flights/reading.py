@@ -11,8 +11,8 @@ from advisor.analysis.whole_flights import WholeFlights
 from advisor.exports.flights.findings import findings
 from advisor.exports.flights.table import Column, Dataset, FlightTable, Recording, counts, numbers, texts
 from advisor.flight.maneuvers.segmentation import GAP_S, MANY_INTERVALS
-from advisor.flight.signals.power_on import PowerOn
 from advisor.flight.signals.record import ALL_UNITS, Channel
+from advisor.flight.signals.track import PowerOn
 from advisor.process.arrays import FloatArray
 
 

@@ -1,4 +1,9 @@
-"""Model of both axes for other programs, as flown or as a diagnosis improved it."""
+"""Model of both axes for other programs, as flown or as a diagnosis improved it.
+
+Without further logs, the last third of the manoeuvres is held out. The other manoeuvres improve the
+simulator, as ``--out`` and ``--export`` do. One procedure decides for both axes which parts of the
+improvement are kept. Each axis simulates the held-out manoeuvres (``ImprovedAxis``).
+"""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
@@ -29,7 +34,7 @@ from advisor.process.atomic_file import write_atomically
 from advisor.report.improved import file_content, improved_file, text_of
 from advisor.report.qualities import trim_of
 from advisor.words.problems import ConfigurationError
-from advisor.words.quantiles import NORMAL_95
+from advisor.words.quantities import NORMAL_95
 
 
 @dataclass(frozen=True)

@@ -4,18 +4,17 @@ import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-from advisor.aircraft.aircraft import Aircraft
-from advisor.aircraft.controls import Elevator, SideControl
+from advisor.aircraft.aircraft import Aircraft, Elevator, SideControl
 from advisor.aircraft.reference import Reference
 from advisor.aircraft.standard_gravity import GRAVITY_M_S2
 from advisor.flight.instruments.atmosphere import AirData
-from advisor.flight.signals.true_airspeed import SEA_LEVEL_DENSITY_KG_M3
+from advisor.flight.signals.track import SEA_LEVEL_DENSITY_KG_M3
 from advisor.gap.candidates.known import less_of_the_servo, together
 from advisor.gap.effects import EFFECTS
 from advisor.gap.result import Diagnosis, Value, spelled
 from advisor.oem.coefficients import Coefficient, scales
 from advisor.words.problems import ConfigurationError
-from advisor.words.quantiles import NORMAL_95
+from advisor.words.quantities import NORMAL_95
 
 
 @dataclass(frozen=True)

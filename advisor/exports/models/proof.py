@@ -11,8 +11,8 @@ from dataclasses import dataclass, replace
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.gap.result import Diagnosis, spelled
 from advisor.simulators.unseen import taken_back_said, unused
-from advisor.words.digits import maneuvers_said, significant
 from advisor.words.problems import UnusableInputError
+from advisor.words.quantities import maneuvers_said, significant
 
 NUMBERS = "the fitted numbers"
 """Name of the fitted derivatives as one part of an improvement."""

@@ -1,21 +1,39 @@
-"""The elevator: its servo outputs, their mixing, and sentences about both for the user.
+"""Elevator, aileron and rudder: their servo outputs, their mixing, and sentences about both for the user.
 
-The rows of ``mixers.py`` give each output's share.
+The rows of ``mixers.py`` give each output's share. With ``Scale`` a positive deflection is trailing edge down
+for a positive pulse in reverse. Positive aileron is the right half's trailing edge down, which rolls the
+aircraft to the left. A positive rudder yaws to the left.
 """
 
 from collections import Counter
 from collections.abc import Collection, Mapping, Sequence
+from dataclasses import replace
+from typing import Literal
 
-from advisor.aircraft.controls import Elevator, ElevatorOutput, Pairs
+from advisor.aircraft.aircraft import Elevator, ElevatorOutput, Pairs, SideControl
 from advisor.flight.vehicle.mixers import NOTHING, ROWS, Control, Role, sides_of
-from advisor.flight.vehicle.surfaces import Calibration, Part, Surface, in_shares, joined_numbers, listed
-from advisor.flight.vehicle.wiring import Wiring
+from advisor.flight.vehicle.surfaces import (
+    Calibration,
+    Part,
+    Surface,
+    Wiring,
+    in_shares,
+    joined_numbers,
+    listed,
+)
 from advisor.words.problems import Problem
 
 _AXES: Mapping[Control, str] = {"aileron": "roll", "rudder": "yaw"}
 """Axis in which the members of a mixed pair cancel, by the other control that the pair drives."""
 
-_OF_ELEVATOR = "Z_δe and M_δe"
+Side = Literal["aileron", "rudder"]
+SIDES: tuple[Side, ...] = ("aileron", "rudder")
+_DERIVATIVES = {
+    "elevator": "Z_δe and M_δe",
+    "aileron": "Y_δa, L_δa and N_δa",
+    "rudder": "Y_δr, L_δr and N_δr",
+}
+"""Derivatives that the scale of each control divides."""
 
 
 def find_elevator(
@@ -33,6 +51,39 @@ def find_elevator(
     if elevator.output != "auto":
         return _as_given(elevator.output, elevator.calibration, wiring, why)
     return _as_found(elevator.calibration, wiring)
+
+
+def find_side_control(name: Side, stated: SideControl, wiring: Wiring) -> Surface | None:
+    """Return the servo outputs of the aileron or the rudder with their scales; None if no source states them.
+
+    Parameters
+    ----------
+    stated
+        Aileron or rudder in the aircraft file. A calibration of one output also applies to the other outputs.
+    wiring
+        Roles and scales of outputs by the vehicle's parameters; may be empty.
+    """
+    given = None if stated.calibration is None else Calibration(stated.calibration)
+    parts = parts_of(name, wiring)
+    if stated.output != "auto":
+        parts = (Part(stated.output, given or wiring.scale(stated.output)),)
+    if not parts:
+        return None
+    if given is not None:
+        return Surface(_in_scale_of(parts, given, wiring), True, "")
+    outputs = f"output{'s' if len(parts) > 1 else ''} {joined_numbers(_numbers(parts))}"
+    begin = f"No {name}.calibration: {outputs} {'are' if len(parts) > 1 else 'is'}"
+    return _without_calibration(parts, begin, name, wiring)
+
+
+def _in_scale_of(parts: Sequence[Part], given: Calibration, wiring: Wiring) -> tuple[Part, ...]:
+    """Return the parts with the first output's calibration carried over to the other outputs."""
+    first = parts[0].output
+    scales = (given.carried_over(wiring.scale(first), wiring.scale(part.output)) for part in parts)
+    return tuple(
+        replace(part, scale=given if part.output == first else scale)
+        for part, scale in zip(parts, scales, strict=True)
+    )
 
 
 def _as_listed(outputs: Sequence[ElevatorOutput], wiring: Wiring) -> Surface | Problem:
@@ -104,17 +155,8 @@ def _carried_over(
             f"together, and {wiring.words.sense.format(n=unknown[0])} is not known.",
             "Replace elevator.output by elevator.outputs, with a calibration for each output.",
         )
-    measured = wiring.scale(first)
-    carried = tuple(
-        Part(
-            part.output,
-            Calibration(calibration).carried_over(measured, wiring.scale(part.output)),
-            part.share,
-            side=part.side,
-        )
-        for part in parts
-    )
-    turned = [n for n in others if wiring.scale(n).reversed != measured.reversed]
+    carried = _in_scale_of(parts, Calibration(calibration), wiring)
+    turned = [n for n in others if wiring.scale(n).reversed != wiring.scale(first).reversed]
     way = (
         f", the other way round for {joined_numbers(turned)} ({wiring.words.sense.format(n='n')})"
         if turned
@@ -129,27 +171,26 @@ def _carried_over(
 
 def _uncalibrated(part: Part, why: str, wiring: Wiring) -> Surface:
     begin = f"No elevator.calibration: output {part.output} ({why}) is"
-    return without_calibration((part,), begin, _OF_ELEVATOR, wiring)
+    return _without_calibration((part,), begin, "elevator", wiring)
 
 
 def _scaled(parts: tuple[Part, ...], formed: str, wiring: Wiring) -> Surface:
     """Return the surface of several outputs without a calibration, with a scale from their limits."""
-    return without_calibration(parts, f"{formed} No calibration: they are", _OF_ELEVATOR, wiring)
+    return _without_calibration(parts, f"{formed} No calibration: they are", "elevator", wiring)
 
 
-def without_calibration(parts: tuple[Part, ...], begin: str, derivatives: str, wiring: Wiring) -> Surface:
+def _without_calibration(parts: tuple[Part, ...], begin: str, control: str, wiring: Wiring) -> Surface:
     """Return a control whose outputs have no calibration, with a sentence on its assumed scale.
 
     Parameters
     ----------
     begin
         Beginning of the sentence on the missing calibration, up to the verb.
-    derivatives
-        Derivatives that the scale divides.
     """
     doubts = tuple(doubt for n in _numbers(parts) if (doubt := wiring.limits_problem(n)) is not None)
     limits = "assumed limits" if doubts else wiring.words.limits
-    said = f"{begin} scaled by {limits} as full travel of 25 deg, so {derivatives} are per assumed degree."
+    divided = _DERIVATIVES[control]
+    said = f"{begin} scaled by {limits} as full travel of 25 deg, so {divided} are per assumed degree."
     return Surface(parts, False, " ".join([said, *map(str, doubts)]), doubts)
 
 

@@ -11,8 +11,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from advisor.flight.maneuvers.events import ManeuverStarted
-from advisor.flight.maneuvers.maneuver import Span
+from advisor.flight.maneuvers.maneuver import ManeuverStarted, Span
 from advisor.flight.maneuvers.segmentation import Segmenter
 
 LATE_S = 0.3

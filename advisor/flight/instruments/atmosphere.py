@@ -15,7 +15,7 @@ import numpy as np
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.flight.signals.channels import GIVEN_AIRSPEED, TRUE_AIRSPEED
 from advisor.flight.signals.record import Channel
-from advisor.flight.signals.true_airspeed import (
+from advisor.flight.signals.track import (
     AS_GROUND_SPEED,
     AS_REPORTED,
     BY_HEIGHT,

@@ -13,10 +13,14 @@ import numpy as np
 from advisor.aircraft.standard_gravity import GRAVITY_M_S2
 from advisor.flight.instruments.delayed_fit import Summand, fit_delays
 from advisor.flight.instruments.measured import Evidence, Measured
-from advisor.flight.signals.derived_alpha import DERIVED_ALPHA, SLOWEST_FLIGHT_M_S
-from advisor.flight.signals.motion import channel_at, path_turning, speed_rate
-from advisor.flight.signals.record import Channel
-from advisor.flight.signals.renewal import renewed
+from advisor.flight.signals.derived_alpha import (
+    DERIVED_ALPHA,
+    SLOWEST_FLIGHT_M_S,
+    channel_at,
+    path_turning,
+    speed_rate,
+)
+from advisor.flight.signals.record import Channel, renewed
 from advisor.process.arrays import FloatArray
 
 Channels = Mapping[str, Channel]

@@ -30,10 +30,11 @@ from advisor.flight.instruments.examined import (
     be_late,
     half_intervals,
     hold_clocks,
+    hold_force_unit,
+    hold_rate,
     with_error,
 )
 from advisor.flight.instruments.measured import ANY, Evidence, Measured, Weighed, weigh
-from advisor.flight.instruments.rate_and_force import hold_force_unit, hold_rate
 from advisor.flight.signals.record import Channel
 
 _AIRSPEED_WIDTH, _AIRSPEED_MEAN = 0.12, 0.95

@@ -23,12 +23,10 @@ from advisor.flight.instruments.measured import (
     weighted,
 )
 from advisor.flight.maneuvers.maneuver import Maneuver
-from advisor.flight.signals.inferred_alpha import alpha_rate
-from advisor.flight.signals.motion import integrated
-from advisor.flight.signals.renewal import renewed
+from advisor.flight.signals.derived_alpha import alpha_rate, integrated
+from advisor.flight.signals.record import renewed
 from advisor.process.arrays import FloatArray
-from advisor.words.quantiles import NORMAL_95
-from advisor.words.quantities import symbol
+from advisor.words.quantities import NORMAL_95, symbol
 
 NEEDED = ("alpha", "q", "theta", "a_z")
 _FOLLOW_S = np.array([0.08, 0.2, 0.5, 1.2])

@@ -15,7 +15,7 @@ import numpy as np
 
 from advisor.aircraft.standard_gravity import GRAVITY_M_S2
 from advisor.flight.maneuvers.maneuver import Maneuver
-from advisor.flight.signals.motion import channel_at, gravity_in_plane
+from advisor.flight.signals.derived_alpha import channel_at, gravity_in_plane
 from advisor.process.arrays import FloatArray
 
 _BEGIN_S, _STAYS, _SCATTERS = 1.0, 0.5, 3.0

@@ -11,11 +11,10 @@ from dataclasses import dataclass
 from math import inf
 from typing import Literal, get_args
 
-from advisor.aircraft.script_identity import ScriptIdentity
-from advisor.flight.maneuvers.events import Notice
-from advisor.flight.maneuvers.maneuver import InputKind
-from advisor.words.ascii_output import printable
-from advisor.words.digits import clock
+from advisor.aircraft.aircraft import ScriptIdentity
+from advisor.flight.maneuvers.maneuver import InputKind, Notice
+from advisor.words.problems import printable
+from advisor.words.quantities import clock
 
 TEXTS = (b"ADVISOR BEGIN", b"ADVISOR END", b"ADVISOR SCRIPT")
 """Beginnings of the announcements."""

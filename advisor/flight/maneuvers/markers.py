@@ -18,9 +18,8 @@ from advisor.flight.maneuvers.movement import (
     without_spikes,
 )
 from advisor.flight.maneuvers.segmentation import LEAD_IN_S
-from advisor.flight.signals.messages import Columns
+from advisor.flight.signals.messages import Columns, WholeTexts
 from advisor.flight.signals.record import Channel
-from advisor.flight.signals.whole_texts import WholeTexts
 from advisor.process.arrays import FloatArray
 
 HEARD = ("RC_CHANNELS", "STATUSTEXT")

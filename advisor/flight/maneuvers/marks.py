@@ -10,13 +10,12 @@ from typing import Literal
 
 import numpy as np
 
-from advisor.aircraft.script_identity import ScriptIdentity
+from advisor.aircraft.aircraft import ScriptIdentity
 from advisor.flight.maneuvers.announced import SCRIPT_NOTICE, Announced, Announcement, Announcements
-from advisor.flight.maneuvers.events import Notice
-from advisor.flight.maneuvers.maneuver import Span
+from advisor.flight.maneuvers.maneuver import Notice, Span
 from advisor.flight.maneuvers.segmentation import LEAD_IN_S
-from advisor.words.digits import clock, stretch
 from advisor.words.problems import Problem
+from advisor.words.quantities import clock, stretch
 
 Marker = Literal["hand", "switch", "text", "system id", "script"]
 

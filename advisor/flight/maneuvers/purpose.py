@@ -12,19 +12,17 @@ from math import degrees, isfinite, radians
 import numpy as np
 
 from advisor.aircraft.aircraft import Limits
-from advisor.flight.maneuvers.binned import shows_hands
-from advisor.flight.maneuvers.excitation import excitation
-from advisor.flight.maneuvers.free_response import FREE_S
-from advisor.flight.maneuvers.hand_flying import PITCH, Loop, flown_elsewhere
+from advisor.flight.maneuvers.excitation import PITCH, Loop, excitation, flown_elsewhere
 from advisor.flight.maneuvers.maneuver import Maneuver, Span
 from advisor.flight.maneuvers.markers import SWEPT, marked_span
 from advisor.flight.maneuvers.marks import Mark
-from advisor.flight.maneuvers.movement import SMALLEST_RAD
-from advisor.flight.maneuvers.own_input import Odds, odds_of_own_input
+from advisor.flight.maneuvers.movement import FREE_S, SMALLEST_RAD
+from advisor.flight.maneuvers.steady_speed import shows_hands
+from advisor.flight.maneuvers.stepped_input import Odds, odds_of_own_input
 from advisor.flight.signals.derived_alpha import SLOWEST_FLIGHT_M_S
 from advisor.flight.signals.record import Channel
 from advisor.flight.vehicle.modes import closes_pitch_loop, has_an_errand, hovers, is_manual
-from advisor.words.digits import distinct_texts
+from advisor.words.quantities import distinct_texts
 
 _BEFORE_S = 0.5
 """Length before an input over which the rate is averaged, s: the least rest of the control."""

@@ -12,17 +12,17 @@ from collections import deque
 
 import numpy as np
 
-from advisor.flight.maneuvers.free_response import FreeResponse
 from advisor.flight.maneuvers.maneuver import Span
 from advisor.flight.maneuvers.movement import (
     SMALLEST_RAD,
+    FreeResponse,
     Movement,
     describe,
     is_still,
     median,
     without_spikes,
 )
-from advisor.flight.signals.samples import Samples
+from advisor.flight.signals.record import Samples
 from advisor.process.arrays import FloatArray
 
 LEAD_IN_S = 1.0

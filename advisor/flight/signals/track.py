@@ -1,12 +1,115 @@
-"""A track: samples of one channel from one source as they arrive, with bounded memory."""
+"""A track: samples of one channel from one source as they arrive, with bounded memory, and the true air
+speed.
 
+The equations of motion need the true air speed V. An autopilot's pressure sensor gives the speed that its
+pressure would have at sea level: V·√(ρ/ρ_0) with ρ_0 = 1.225 kg/m³. The density ρ comes from the static
+pressure, else from the height above mean sea level. A barometer's temperature is not used, because the board
+warms the sensor. One simulated autopilot reports 30 °C, with which V would be 3.5 % too large.
+
+The standard atmosphere holds below 11 km (ISO 2533).
+"""
+
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
 
-from advisor.flight.signals.power_on import Extremes
+from advisor.flight.signals.channels import GIVEN_AIRSPEED, TRUE_AIRSPEED
 from advisor.flight.signals.record import Channel
 from advisor.process.arrays import FloatArray, IntArray
+
+MOST = 600
+"""Largest number of stretches, about the number of dots across a terminal. With more stretches, neighbours
+are joined."""
+_FIRST_S = 0.25
+"""Initial length of a stretch, s: half a step of the quickest input."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Course:
+    """A channel over time, as its smallest and largest values in stretches of equal length."""
+
+    t: FloatArray
+    """Shape (n,): middle of each stretch with samples, s since boot."""
+    low: FloatArray
+    """Shape (n,): smallest value in each stretch, SI."""
+    high: FloatArray
+    """Shape (n,): largest value in each stretch, SI."""
+
+
+class Extremes:
+    """Smallest and largest values of one channel, collected from batches of any size."""
+
+    def __init__(self) -> None:
+        self._begin_s = np.nan
+        self._length_s = _FIRST_S
+        self._low = np.full(MOST, np.inf)
+        self._high = np.full(MOST, -np.inf)
+
+    def add(self, t: FloatArray, y: FloatArray) -> None:
+        """Take stamps and values of samples, shape (n,) each. Samples before the first stretch are
+        dropped."""
+        if np.isnan(self._begin_s):
+            self._begin_s = float(t[0])
+        late = t >= self._begin_s
+        t, y = t[late], y[late]
+        if len(t) == 0:
+            return
+        since_s = t - self._begin_s
+        while float(np.max(since_s)) / self._length_s >= MOST:
+            self._halve()
+        places = (since_s / self._length_s).astype(np.intp)
+        np.minimum.at(self._low, places, y)
+        np.maximum.at(self._high, places, y)
+
+    @property
+    def course(self) -> Course:
+        """Smallest and largest values of the channel so far."""
+        filled = np.flatnonzero(self._high >= self._low)
+        t = np.asarray(self._begin_s + (filled + 0.5) * self._length_s, dtype=np.float64)
+        return Course(t, self._low[filled], self._high[filled])
+
+    def _halve(self) -> None:
+        """Join neighbouring stretches, so that each is twice as long."""
+        half = MOST // 2
+        low, high = self._low.reshape(half, 2).min(axis=1), self._high.reshape(half, 2).max(axis=1)
+        self._low, self._high = np.full(MOST, np.inf), np.full(MOST, -np.inf)
+        self._low[:half], self._high[:half] = low, high
+        self._length_s *= 2.0
+
+
+@dataclass(frozen=True, slots=True)
+class PowerOn:
+    """All channels that one vehicle sent from one power-on to the next.
+
+    A stream keeps power-ons only on request, because their memory grows with the flight.
+    """
+
+    boot: int
+    """Number of the power-on in its log, 0 for the first."""
+    channels: Mapping[str, Channel]
+    """Samples of each channel from its best source, SI, by the channel's name."""
+    clock_order: IntArray
+    """Shape (n,), rising: arrival index of each message with a stamp of the vehicle's clock."""
+    clock_s: FloatArray
+    """Shape (n,), never falling: vehicle's clock at each arrival in ``clock_order``, s since boot."""
+    modes: tuple[tuple[float, str], ...] = ()
+    """Vehicle time of each flight mode change, s since boot (NaN before the first clock stamp), and the
+    mode's name."""
+
+    def arrivals(self, start_s: float, end_s: float) -> tuple[int, int]:
+        """Return the arrival indices of the clock's first and last stamp with ``start_s <= t <= end_s``.
+
+        Raises
+        ------
+        ValueError
+            The clock has no stamp within this stretch.
+        """
+        i, j = np.searchsorted(self.clock_s, [start_s, np.nextafter(end_s, np.inf)])
+        if i == j:
+            raise ValueError("the vehicle's clock shows no time of this stretch")
+        return int(self.clock_order[i]), int(self.clock_order[j - 1])
+
 
 _WINDOW_S = 10.0
 """Length of vehicle time over which samples are counted, s: longer than most manoeuvres."""
@@ -216,3 +319,109 @@ class Track:
             setattr(self, name, grown)
         self._size = self._counted = size
         self._counted_s = self._counted_s if size else np.nan
+
+
+SEA_LEVEL_DENSITY_KG_M3 = 1.225
+"""Air density at sea level, kg/m³."""
+_SEA_LEVEL_K = 288.15
+_SEA_LEVEL_PA = 101_325.0
+_CELSIUS_K = 273.15
+_LAPSE_K_M = 0.0065
+_EXPONENT = 4.255876
+"""Exponent g/(R·lapse) - 1 of the standard atmosphere below 11 km."""
+_GAS_CONSTANT = 287.05287
+"""Gas constant of dry air, J/(kg·K)."""
+PLAUSIBLE = {"static_pressure": (2.2e4, 1.1e5), "altitude": (-500.0, 11_000.0)}
+"""Plausible range of a channel below the tropopause, Pa or m. A value of zero indicates a missing sensor."""
+
+
+def standard_pressure(height_m: float | FloatArray) -> FloatArray:
+    """Return the pressure in Pa at heights above mean sea level, below 11 km."""
+    return np.asarray(_SEA_LEVEL_PA * (1.0 - _LAPSE_K_M * height_m / _SEA_LEVEL_K) ** (_EXPONENT + 1.0))
+
+
+def standard_density(pressure_pa: float | FloatArray) -> FloatArray:
+    """Return the density in kg/m³ at pressures in Pa, below 11 km."""
+    return np.asarray(
+        SEA_LEVEL_DENSITY_KG_M3 * (pressure_pa / _SEA_LEVEL_PA) ** (_EXPONENT / (_EXPONENT + 1.0))
+    )
+
+
+def standard_height(density_kg_m3: float | FloatArray) -> FloatArray:
+    """Return the height in m, below 11 km, with this density in the standard atmosphere."""
+    ratio = np.asarray(density_kg_m3) / SEA_LEVEL_DENSITY_KG_M3
+    return np.asarray(_SEA_LEVEL_K / _LAPSE_K_M * (1.0 - ratio ** (1.0 / _EXPONENT)))
+
+
+def density(pressure_pa: float | FloatArray, temperature_c: float | None) -> FloatArray:
+    """Return the density of dry air in kg/m³, at the standard temperature if none is known."""
+    if temperature_c is None:
+        return standard_density(pressure_pa)
+    return np.asarray(pressure_pa / (_GAS_CONSTANT * (temperature_c + _CELSIUS_K)))
+
+
+BY_PRESSURE = ", true by the static pressure"
+"""End of the source name of an air speed corrected to true by the static pressure."""
+AS_REPORTED = ", true as reported"
+"""End of the source name of an air speed that a simulator reports as true."""
+AS_GROUND_SPEED = ", equal to the ground speed"
+"""End of the source name of an air speed that equals the ground speed in every sample. A ground speed is not
+based on pressure, so it needs no density correction."""
+BY_HEIGHT = ", true by the height"
+"""End of the source name of an air speed corrected to true by the height."""
+
+
+def is_true(airspeed: Channel) -> bool:
+    """Return whether an air speed is true. An air speed that stays as logged may be indicated."""
+    source = airspeed.source
+    return source in (GIVEN_AIRSPEED, TRUE_AIRSPEED) or source.endswith(
+        (BY_PRESSURE, BY_HEIGHT, AS_REPORTED, AS_GROUND_SPEED)
+    )
+
+
+def true_airspeed(
+    logged: Channel, pressure: Channel | None, altitude: Channel | None, temperature_c: float | None
+) -> Channel:
+    """Return the true air speed for a logged air speed; unchanged without a density.
+
+    Parameters
+    ----------
+    logged
+        Logged air speed, m/s.
+    pressure, altitude
+        Static pressure in Pa, and height above mean sea level in m, around that time; None if missing.
+    temperature_c
+        Air temperature from the aircraft file, deg C; None for the standard atmosphere.
+    """
+    if is_true(logged):
+        return logged
+    measured, high = _plausible(pressure), _plausible(altitude)
+    if measured is not None:
+        at, pressure_pa, by = measured.t, measured.y, BY_PRESSURE
+    elif high is not None:
+        at, pressure_pa, by = high.t, standard_pressure(high.y), BY_HEIGHT
+    else:
+        return logged
+    ratio: FloatArray = np.sqrt(SEA_LEVEL_DENSITY_KG_M3 / density(pressure_pa, temperature_c))
+    true = logged.y * np.interp(logged.t, at, ratio)
+    return replace(logged, y=true, source=f"{logged.source}{by}", gain=float(np.mean(ratio)))
+
+
+def true_over_read(records: Iterable[Mapping[str, Channel]]) -> float:
+    """Return the mean factor from the read to the true air speed; 1 without an air speed.
+
+    A crew states a reference speed as its instrument reads it.
+    """
+    gains = [channels["airspeed"].gain for channels in records if "airspeed" in channels]
+    return float(np.mean(gains)) if gains else 1.0
+
+
+def _plausible(channel: Channel | None) -> Channel | None:
+    """Return the samples within the plausible range of an atmosphere; None without any."""
+    if channel is None:
+        return None
+    low, high = PLAUSIBLE[channel.name]
+    good = (channel.y >= low) & (channel.y <= high)
+    # A log without the height above sea level has zeros in its place.
+    good &= channel.y != 0.0
+    return replace(channel, t=channel.t[good], y=channel.y[good]) if good.any() else None

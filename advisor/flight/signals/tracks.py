@@ -8,10 +8,15 @@ import numpy as np
 
 from advisor.flight.signals.channels import COMPANION_ALPHA, GIVEN_AIRSPEED, GIVEN_HEIGHT, READINGS, Decoded
 from advisor.flight.signals.derived_alpha import DERIVED_ALPHA, DerivedAlpha
-from advisor.flight.signals.power_on import Course
 from advisor.flight.signals.record import AIR_UNITS, UNITS, Channel
-from advisor.flight.signals.track import ChannelStatus, Track
-from advisor.flight.signals.true_airspeed import AS_GROUND_SPEED, AS_REPORTED, true_airspeed
+from advisor.flight.signals.track import (
+    AS_GROUND_SPEED,
+    AS_REPORTED,
+    ChannelStatus,
+    Course,
+    Track,
+    true_airspeed,
+)
 
 _AIR_S = 10.0
 """Margin around a stretch for the samples of pressure and height, s. Pressure and height may arrive once in a

@@ -14,7 +14,7 @@ from math import ceil, radians
 import numpy as np
 
 from advisor.aircraft.aircraft import Aircraft, Limits
-from advisor.flight.elevator.elevator_sign import ElevatorSign, turned
+from advisor.flight.elevator.elevator_guess import ElevatorSign, turned
 from advisor.flight.instruments.examined import ExaminedRecords
 from advisor.flight.instruments.measured import Evidence
 from advisor.flight.maneuvers.announced import PITCH_KINDS, SIDE_KINDS
@@ -27,14 +27,20 @@ from advisor.flight.maneuvers.axes.side_inputs import (
     part_of_input,
     with_elevator,
 )
-from advisor.flight.maneuvers.binned import HISTORY_S
-from advisor.flight.maneuvers.events import Activity, FlightEvent, ManeuverFlown, Notice, SideManeuverFlown
-from advisor.flight.maneuvers.hand_flying import PITCH, ROLL, YAW, Loop
-from advisor.flight.maneuvers.maneuver import Maneuver, Span
+from advisor.flight.maneuvers.excitation import PITCH, ROLL, YAW, Loop
+from advisor.flight.maneuvers.maneuver import (
+    Activity,
+    FlightEvent,
+    Maneuver,
+    ManeuverFlown,
+    Notice,
+    SideManeuverFlown,
+    Span,
+)
 from advisor.flight.maneuvers.markers import marked_span
 from advisor.flight.maneuvers.marks import Mark, Marks
 from advisor.flight.maneuvers.purpose import Because, judged
-from advisor.flight.maneuvers.steady_speed import at_steady_speed
+from advisor.flight.maneuvers.steady_speed import HISTORY_S, at_steady_speed
 from advisor.flight.signals.derived_alpha import SLOWEST_FLIGHT_M_S
 from advisor.flight.signals.record import Channel
 from advisor.flight.stream.maneuver_records import ManeuverRecords

@@ -8,17 +8,19 @@ from itertools import groupby
 import numpy as np
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.flight.maneuvers.events import (
+from advisor.flight.maneuvers.maneuver import (
     Activity,
     FlightBegan,
     FlightEvent,
+    Maneuver,
     ManeuverAgain,
     ManeuverFlown,
     Notice,
     SideManeuverFlown,
     VehicleFound,
+    are_one,
+    is_fuller,
 )
-from advisor.flight.maneuvers.maneuver import Maneuver, are_one, is_fuller
 from advisor.flight.maneuvers.marks import Mark
 from advisor.flight.signals.messages import Columns
 from advisor.flight.signals.track import ChannelStatus

@@ -5,7 +5,7 @@ from dataclasses import replace
 from math import nan
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.flight.maneuvers.events import READER_NOTICE, FlightEvent, Notice, VehicleFound
+from advisor.flight.maneuvers.maneuver import READER_NOTICE, FlightEvent, Notice, VehicleFound
 from advisor.flight.signals.messages import Columns
 from advisor.flight.signals.record import Channel
 from advisor.flight.signals.trust import Distrust
@@ -14,7 +14,7 @@ from advisor.flight.vehicle.following import FOLLOW, TAKE, Following, chosen
 from advisor.flight.vehicle.modes import in_hover, mode_name
 from advisor.flight.vehicle.parameters import AIRSPEED_SENSOR, LOG_PROFILE, Parameters, filter_delay_s
 from advisor.flight.vehicle.vehicle import Vehicle, VehicleFinder
-from advisor.words.ascii_output import printable
+from advisor.words.problems import printable
 
 _BUNDLED = b"Bundled aircraft"
 """Beginning of the STATUSTEXT with which this project's simulator introduces itself."""

@@ -12,17 +12,14 @@ from advisor.flight.instruments.examination import examine
 from advisor.flight.instruments.examined import ExaminedRecords
 from advisor.flight.instruments.measured import Evidence
 from advisor.flight.maneuvers.maneuver import BEFORE_S, CONTROLS, Maneuver, Span
-from advisor.flight.signals.derived_alpha import SLOWEST_FLIGHT_M_S
-from advisor.flight.signals.motion import along_heading
-from advisor.flight.signals.record import AIR_UNITS, UNITS, Channel
-from advisor.flight.signals.renewal import counted_once
-from advisor.flight.signals.robust import robust_std
+from advisor.flight.signals.derived_alpha import SLOWEST_FLIGHT_M_S, along_heading
+from advisor.flight.signals.record import AIR_UNITS, UNITS, Channel, counted_once, robust_std
 from advisor.flight.signals.tracks import Tracks
 from advisor.flight.signals.trust import Distrust, distrusted
 from advisor.flight.stream.identity import Identity
-from advisor.flight.vehicle.breaks import Breaks
+from advisor.flight.vehicle.pieces import Breaks
 from advisor.process.arrays import FloatArray
-from advisor.words.digits import clock
+from advisor.words.quantities import clock
 
 _WATCHED = {
     "q": "pitch rate",

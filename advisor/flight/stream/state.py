@@ -5,44 +5,32 @@ from dataclasses import replace
 
 import numpy as np
 
-from advisor.aircraft.aircraft import Aircraft
-from advisor.aircraft.script_identity import ScriptIdentity
-from advisor.flight.elevator.elevator_guess import ElevatorGuesses, Guess
-from advisor.flight.elevator.elevator_sign import SAID
+from advisor.aircraft.aircraft import Aircraft, ScriptIdentity
+from advisor.flight.elevator.elevator_guess import SAID, ElevatorGuesses, Guess
 from advisor.flight.elevator.mixing import Mixing
 from advisor.flight.instruments.axes.side_instruments import examine_side
 from advisor.flight.instruments.examination import examine
 from advisor.flight.instruments.examined import ExaminedRecords
-from advisor.flight.maneuvers.events import VehicleSaid
-from advisor.flight.maneuvers.maneuver import Maneuver
+from advisor.flight.maneuvers.maneuver import Maneuver, VehicleSaid
 from advisor.flight.maneuvers.markers import MarkerWatch
 from advisor.flight.maneuvers.marks import Mark, Marks
-from advisor.flight.signals.attitude import Attitudes
-from advisor.flight.signals.banks import Banks
-from advisor.flight.signals.clocks import BootClock
-from advisor.flight.signals.instrument_finding import InstrumentFinding
-from advisor.flight.signals.messages import Columns
-from advisor.flight.signals.power_on import PowerOn
+from advisor.flight.signals.channels import Banks
+from advisor.flight.signals.clocks import Attitudes, BootClock
+from advisor.flight.signals.messages import LONGEST, Columns, WholeTexts
 from advisor.flight.signals.record import UNITS, Channel
-from advisor.flight.signals.track import ChannelStatus
+from advisor.flight.signals.track import ChannelStatus, PowerOn
 from advisor.flight.signals.tracks import Tracks
-from advisor.flight.signals.trust import Distrust, frozen
-from advisor.flight.signals.whole_texts import LONGEST, WholeTexts
-from advisor.flight.stream.axes.side_path import LOOPS, SidePath
+from advisor.flight.signals.trust import Distrust, InstrumentFinding, frozen
 from advisor.flight.stream.cutting import Cutting
-from advisor.flight.stream.decoding import AskedSources
-from advisor.flight.stream.elevator_path import ElevatorPath
+from advisor.flight.stream.elevator_path import LOOPS, AskedSources, ElevatorPath, SidePath
 from advisor.flight.stream.identity import READER, Identity
 from advisor.flight.stream.maneuver_records import ManeuverRecords
-from advisor.flight.stream.service import Service
-from advisor.flight.stream.suitability import problems, with_guess
-from advisor.flight.vehicle.breaks import DOWN, Breaks
+from advisor.flight.stream.suitability import Service, problems, with_guess
 from advisor.flight.vehicle.following import FOLLOW, TAKE, SenderWatch
-from advisor.flight.vehicle.pieces import Master
+from advisor.flight.vehicle.pieces import DOWN, Breaks, Master
 from advisor.flight.vehicle.surfaces import Surface
 from advisor.flight.vehicle.vehicle import Vehicle
-from advisor.words.ascii_output import printable
-from advisor.words.problems import Problem
+from advisor.words.problems import Problem, printable
 
 _EVERY_S = 10.0
 """Length of an examined stretch, s: one to two periods of a slow short period."""

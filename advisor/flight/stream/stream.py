@@ -9,22 +9,21 @@ from dataclasses import replace
 
 import numpy as np
 
-from advisor.flight.elevator.commanded import Commanded, commanded
-from advisor.flight.maneuvers.events import FlightEvent, ModeChanged, Notice, Rebooted
+from advisor.flight.elevator.mixing import Commanded, commanded
+from advisor.flight.maneuvers.maneuver import FlightEvent, ModeChanged, Notice, Rebooted
 from advisor.flight.maneuvers.markers import HEARD
-from advisor.flight.signals.banks import merged
-from advisor.flight.signals.channels import COMPANIONS, Decoded, stamps
+from advisor.flight.signals.channels import COMPANIONS, Decoded, merged, stamps
 from advisor.flight.signals.clocks import BootClock
 from advisor.flight.signals.derived_alpha import DERIVED_ALPHA, promised
 from advisor.flight.signals.messages import Columns, arrivals
-from advisor.flight.stream.decoding import decoded, power_on
+from advisor.flight.stream.elevator_path import decoded, power_on
 from advisor.flight.stream.state import StreamState
 from advisor.flight.vehicle.modes import closes_pitch_loop
 from advisor.flight.vehicle.pieces import Master, by_boot, pieces
 from advisor.flight.vehicle.vehicle import Vehicle
 from advisor.process.arrays import FloatArray, IntArray
-from advisor.words.digits import clock
 from advisor.words.problems import Problem
+from advisor.words.quantities import clock
 
 _OUTPUTS = ("SERVO_OUTPUT_RAW", "ACTUATOR_OUTPUT_STATUS")
 _HEARTBEAT_S = 2.2

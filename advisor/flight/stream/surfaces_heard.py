@@ -7,18 +7,15 @@ limit received later waits for the next power-on, so that no manoeuvre has a ste
 from dataclasses import replace
 from math import isfinite
 
-from advisor.aircraft.aircraft import Aircraft
-from advisor.aircraft.controls import Elevator
-from advisor.flight.elevator.axes.side_controls import find_side_control
-from advisor.flight.elevator.elevator_outputs import find_elevator
-from advisor.flight.maneuvers.events import READER_NOTICE, FlightEvent, Notice
+from advisor.aircraft.aircraft import Aircraft, Elevator
+from advisor.flight.elevator.elevator_outputs import find_elevator, find_side_control
+from advisor.flight.maneuvers.maneuver import READER_NOTICE, FlightEvent, Notice
 from advisor.flight.signals.messages import Columns
 from advisor.flight.vehicle.parameters import Parameters, Sender, Stated, read_by
-from advisor.flight.vehicle.surfaces import Surface
+from advisor.flight.vehicle.surfaces import Surface, Wiring
 from advisor.flight.vehicle.vehicle import Vehicle, VehicleFinder
-from advisor.flight.vehicle.wiring import Wiring
-from advisor.words.digits import clock
 from advisor.words.problems import Problem
+from advisor.words.quantities import clock
 
 _GROUND_STATION = 190
 """Component id (MAV_COMP_ID_MISSIONPLANNER) of a ground station that records parameters from a file."""

@@ -9,8 +9,7 @@ control.
 from collections.abc import Mapping
 
 from advisor.flight.vehicle.mixers import AILERON, ELEVATOR, RUDDER, Control, Role, arduplane_roles
-from advisor.flight.vehicle.surfaces import Scale, listed
-from advisor.flight.vehicle.wiring import Parameters, Wiring, Words, limits
+from advisor.flight.vehicle.surfaces import Parameters, Scale, Wiring, Words, limits, listed
 
 _CHANNELS = range(1, 17)
 PREFIXES = ("SERVO", "RCMAP_", "DSPOILER_OPTS", *(f"RC{k}_REVERSED" for k in _CHANNELS))

@@ -14,7 +14,7 @@ import numpy as np
 
 from advisor.flight.signals.messages import Columns
 from advisor.flight.vehicle import ardupilot_wiring, px4_wiring
-from advisor.flight.vehicle.wiring import Wiring
+from advisor.flight.vehicle.surfaces import Wiring
 
 _INTEGERS = frozenset(range(1, 7))
 """Values of MAV_PARAM_TYPE that are integers of up to 32 bits."""

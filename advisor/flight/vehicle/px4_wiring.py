@@ -12,8 +12,7 @@ from math import copysign
 import numpy as np
 
 from advisor.flight.vehicle.mixers import ELEVATOR, NOTHING, PX4, Control, Role, Torque
-from advisor.flight.vehicle.surfaces import Scale
-from advisor.flight.vehicle.wiring import Parameters, Wiring, Words, assumed_limits
+from advisor.flight.vehicle.surfaces import Parameters, Scale, Wiring, Words, assumed_limits
 
 GROUPS = {
     "PWM_MAIN": Scale(1000.0, 1500.0, 2000.0),

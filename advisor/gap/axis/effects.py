@@ -23,10 +23,7 @@ from advisor.gap.effects.thrust_moment import EFFECT as THRUST
 from advisor.gap.effects.transport_delay import DELAY
 from advisor.gap.inference.sizes import ARM_SHARES, width_of
 from advisor.gap.inference.with_motion import WITNESSES
-from advisor.gap.kit.effect import without_sizes
-from advisor.gap.kit.least import FILTERED_S
-from advisor.gap.kit.skew import skew_beyond
-from advisor.gap.kit.variant import Variant
+from advisor.gap.kit.effect import FILTERED_S, Variant, skew_beyond, without_sizes
 from advisor.gap.result import Unseen, spelled
 from advisor.model.axis import Axis, Place
 from advisor.oem.axis.parameter import moves_in

@@ -11,16 +11,14 @@ from functools import partial
 
 import numpy as np
 
-from advisor.flight.signals.robust import robust_std
+from advisor.flight.signals.record import robust_std
 from advisor.gap.axis.fit import Fit, Known
 from advisor.gap.axis.setting import Flown
 from advisor.oem.arrow import solved_within
 from advisor.oem.axis.motion import AxisMotion
-from advisor.oem.covariance import colours_of
+from advisor.oem.covariance import Weighing, colours_of
 from advisor.oem.driven_motion.likeliest_noise import MOST_MANEUVERS, likeliest
-from advisor.oem.driven_motion.noise import GUST, GUST_MEMORY, Noise
-from advisor.oem.driven_motion.setting import Setting, records_of
-from advisor.oem.weighing import Weighing
+from advisor.oem.driven_motion.setting import GUST, GUST_MEMORY, Noise, Setting, records_of
 from advisor.process.arrays import FloatArray
 
 _STEP = 0.1

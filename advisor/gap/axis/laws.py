@@ -13,7 +13,7 @@ from advisor.gap.axis.effects import AxisEffect, block_of, changes_of
 from advisor.gap.axis.fit import Fit
 from advisor.gap.axis.models import Case
 from advisor.gap.inference.sizes import BENT, of_range
-from advisor.gap.kit.variant import Variant
+from advisor.gap.kit.effect import Variant
 from advisor.gap.uncatalogued.candidate_laws import RINGING, STOPS, SURFACE_STOP, sticking, stops
 from advisor.gap.verdict.missing_law import Lacking
 from advisor.model.axis import Axis, Curve

@@ -11,7 +11,7 @@ from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.gap.axis.effects import AxisEffect
 from advisor.gap.axis.fit import Fit, Known, Point, fitted
 from advisor.gap.axis.setting import Flown, Setting
-from advisor.gap.candidates.nuisances import REACH
+from advisor.gap.candidates.known import REACH
 from advisor.gap.fitting.prior import ERROR_IF_WRONG
 from advisor.gap.records.floor import SMOOTH, TOLERANCE
 from advisor.gap.records.smoothness import white_part

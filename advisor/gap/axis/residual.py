@@ -8,7 +8,7 @@ from advisor.gap.axis.fit import Fit
 from advisor.gap.axis.setting import Flown
 from advisor.gap.inference.residual import NATURAL, Residual, shares_of
 from advisor.gap.inference.with_motion import BIN_S, moving_power
-from advisor.gap.noise.probes import Probe, at_its_size, coloured_between
+from advisor.gap.noise.quiet import Probe, at_its_size, coloured_between
 from advisor.oem.axis.disturbance import AIR, Course, blocks_of, courses_of
 from advisor.process.arrays import FloatArray
 

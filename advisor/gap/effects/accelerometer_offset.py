@@ -3,9 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import replace
 
-from advisor.gap.kit.effect import ANY, Effect, Need
-from advisor.gap.kit.least import ARM_M, least_arm_m
-from advisor.gap.kit.variant import Variant
+from advisor.gap.kit.effect import ANY, ARM_M, Effect, Need, Variant, least_arm_m
 from advisor.gap.records.flights import PreparedManeuvers
 
 _CHORDS = 1.0

@@ -1,7 +1,6 @@
 """The accelerometer is stamped later or earlier than the other channels."""
 
-from advisor.gap.kit.effect import ANY, Effect, Need
-from advisor.gap.kit.skew import UNFILTERED, skewed
+from advisor.gap.kit.effect import ANY, UNFILTERED, Effect, Need, skewed
 
 EFFECT = Effect(
     name="accelerometer_skew",

@@ -2,9 +2,7 @@
 
 import numpy as np
 
-from advisor.gap.kit.effect import Effect, always
-from advisor.gap.kit.least import SMALL_ANGLE_RAD
-from advisor.gap.kit.variant import Variant
+from advisor.gap.kit.effect import SMALL_ANGLE_RAD, Effect, Variant, always
 
 BACKLASH = Variant(
     "actuator_backlash", "input", ("half_width_rad",), ((0.003,), (0.008,), (0.02,)), (2e-4,),

@@ -5,9 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from advisor.gap.kit.effect import ANY, Effect
-from advisor.gap.kit.least import SMALL_ANGLE_RAD
-from advisor.gap.kit.variant import Values, Variant
+from advisor.gap.kit.effect import ANY, SMALL_ANGLE_RAD, Effect, Values, Variant
 from advisor.gap.records.flights import PreparedManeuvers
 from advisor.gap.simulator.layout import INDEX
 from advisor.process.arrays import FloatArray

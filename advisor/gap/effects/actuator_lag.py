@@ -2,9 +2,7 @@
 
 from dataclasses import replace
 
-from advisor.gap.kit.effect import Effect, always
-from advisor.gap.kit.least import LEAST_S
-from advisor.gap.kit.variant import Values, Variant
+from advisor.gap.kit.effect import LEAST_S, Effect, Values, Variant, always
 from advisor.gap.records.flights import PreparedManeuvers
 from advisor.gap.simulator.layout import INDEX
 from advisor.process.arrays import FloatArray

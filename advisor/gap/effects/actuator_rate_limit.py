@@ -1,7 +1,6 @@
 """The servo moves no faster than a limit."""
 
-from advisor.gap.kit.effect import Effect, always
-from advisor.gap.kit.variant import Variant
+from advisor.gap.kit.effect import Effect, Variant, always
 
 # The search uses the slowness 1/ρ: zero means no limit, and the cost is smooth there.
 RATE_LIMIT = Variant(

@@ -2,8 +2,7 @@
 
 from collections.abc import Sequence
 
-from advisor.gap.kit.effect import ANY, Effect, Need
-from advisor.gap.kit.variant import Values, Variant
+from advisor.gap.kit.effect import ANY, Effect, Need, Values, Variant
 from advisor.gap.records.flights import PreparedManeuvers
 from advisor.gap.simulator.layout import INDEX
 from advisor.oem.prepare import SPEED_CHANGE

@@ -1,8 +1,6 @@
 """The rate of the angle of attack makes a pitching moment."""
 
-from advisor.gap.kit.curve import Curve
-from advisor.gap.kit.effect import ANY, Effect, Need, always
-from advisor.gap.kit.variant import Variant
+from advisor.gap.kit.effect import ANY, Curve, Effect, Need, Variant, always
 
 _RATE = Variant(
     "alpha_dot", "moment_equation", ("M_alpha_dot",), ((0.0,),), (0.02,), ((-20.0, 20.0),), 0.0,

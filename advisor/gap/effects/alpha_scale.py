@@ -1,7 +1,6 @@
 """The angle of attack has a scale error."""
 
-from advisor.gap.kit.effect import ANY, Effect, Need, always
-from advisor.gap.kit.variant import Variant
+from advisor.gap.kit.effect import ANY, Effect, Need, Variant, always
 
 _SCALE = Variant(
     "alpha_scale", "alpha_sensor", ("scale",), ((0.0,),), (0.002,), ((-0.8, 3.0),), 0.01,

@@ -1,7 +1,6 @@
 """The angle of attack is stamped later or earlier than the other channels."""
 
-from advisor.gap.kit.effect import ANY, Effect, Need
-from advisor.gap.kit.skew import skewed
+from advisor.gap.kit.effect import ANY, Effect, Need, skewed
 
 EFFECT = Effect(
     name="alpha_skew",

@@ -2,9 +2,7 @@
 
 from collections.abc import Sequence
 
-from advisor.gap.kit.effect import ANY, Effect, Need
-from advisor.gap.kit.least import least_arm_m
-from advisor.gap.kit.variant import Variant
+from advisor.gap.kit.effect import ANY, Effect, Need, Variant, least_arm_m
 from advisor.gap.records.flights import PreparedManeuvers
 
 _CHORDS = 4.0

@@ -5,9 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from advisor.gap.kit.effect import ANY, Effect, Need
-from advisor.gap.kit.skew import UNFILTERED, skew_of
-from advisor.gap.kit.variant import Values, Variant
+from advisor.gap.kit.effect import ANY, UNFILTERED, Effect, Need, Values, Variant, skew_of
 from advisor.gap.records.flights import PreparedManeuvers
 from advisor.gap.simulator.layout import INDEX, OUTPUTS, SKEWS
 from advisor.process.arrays import FloatArray

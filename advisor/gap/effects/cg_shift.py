@@ -4,8 +4,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from advisor.gap.kit.changes_between import ONSET, ramps_and_steps, shift_moments, shift_stability
-from advisor.gap.kit.effect import Effect, Need
-from advisor.gap.kit.variant import Variant
+from advisor.gap.kit.effect import Effect, Need, Variant
 from advisor.gap.records.flights import PreparedManeuvers
 
 

@@ -1,8 +1,6 @@
 """The elevator's moment is nonlinear in its deflection."""
 
-from advisor.gap.kit.curve import Curve, bending
-from advisor.gap.kit.effect import ANY, Effect
-from advisor.gap.kit.variant import Variant
+from advisor.gap.kit.effect import ANY, Curve, Effect, Variant, bending
 
 _CURVE = Curve("delta_e", {"M_delta2": 2, "M_delta3": 3})
 _CURVED = Variant(

@@ -4,8 +4,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from advisor.gap.kit.changes_between import ONSET, divide, ramps_and_steps, steps_in
-from advisor.gap.kit.effect import ANY, Effect, Need
-from advisor.gap.kit.variant import Values, Variant
+from advisor.gap.kit.effect import ANY, Effect, Need, Values, Variant
 from advisor.gap.records.flights import PreparedManeuvers
 from advisor.gap.simulator.layout import DERIVATIVES
 from advisor.process.arrays import FloatArray

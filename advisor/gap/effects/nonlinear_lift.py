@@ -4,9 +4,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from advisor.gap.kit.curve import Curve, bent
-from advisor.gap.kit.effect import ANY, Effect
-from advisor.gap.kit.variant import Variant
+from advisor.gap.kit.effect import ANY, Curve, Effect, Variant, bent
 from advisor.gap.records.flights import PreparedManeuvers
 
 _CURVE = Curve("alpha", {"Z_alpha2": 2, "Z_alpha3": 3})

@@ -1,8 +1,6 @@
 """The pitching moment is nonlinear in the angle of attack."""
 
-from advisor.gap.kit.curve import Curve, bending
-from advisor.gap.kit.effect import ANY, Effect
-from advisor.gap.kit.variant import Variant
+from advisor.gap.kit.effect import ANY, Curve, Effect, Variant, bending
 
 _CURVE = Curve("alpha", {"M_alpha2": 2, "M_alpha3": 3})
 _CURVED = Variant(

@@ -1,7 +1,6 @@
 """The pitch rate has a constant offset."""
 
-from advisor.gap.kit.effect import ANY, Effect, always
-from advisor.gap.kit.variant import Variant
+from advisor.gap.kit.effect import ANY, Effect, Variant, always
 
 _LEAST_RAD_S = 0.00175
 """Least bias of the pitch rate that is named, rad/s (0.1 deg/s): the residual after calibration on the

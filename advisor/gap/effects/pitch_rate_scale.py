@@ -1,7 +1,6 @@
 """The pitch rate has a scale error."""
 
-from advisor.gap.kit.effect import ANY, Effect, always
-from advisor.gap.kit.variant import Variant
+from advisor.gap.kit.effect import ANY, Effect, Variant, always
 
 SCALE = Variant(
     "pitch_rate_scale", "pitch_rate_sensor", ("scale",), ((0.0,),), (0.002,), ((-0.8, 3.0),), 0.01,

@@ -1,7 +1,6 @@
 """The pitch rate is stamped later or earlier than the other channels."""
 
-from advisor.gap.kit.effect import ANY, Effect
-from advisor.gap.kit.skew import UNFILTERED, skewed
+from advisor.gap.kit.effect import ANY, UNFILTERED, Effect, skewed
 
 EFFECT = Effect(
     name="pitch_rate_skew",

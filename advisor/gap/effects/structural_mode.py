@@ -4,8 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from advisor.gap.kit.effect import ANY, Effect, always
-from advisor.gap.kit.variant import Values, Variant
+from advisor.gap.kit.effect import ANY, Effect, Values, Variant, always
 from advisor.gap.records.flights import PreparedManeuvers
 from advisor.gap.simulator.layout import INDEX
 from advisor.process.arrays import FloatArray

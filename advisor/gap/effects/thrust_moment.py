@@ -5,8 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from advisor.gap.kit.effect import ANY, Effect, Need
-from advisor.gap.kit.variant import Variant
+from advisor.gap.kit.effect import ANY, Effect, Need, Variant
 from advisor.gap.records.flights import PreparedManeuvers
 from advisor.gap.simulator.layout import THROTTLE
 

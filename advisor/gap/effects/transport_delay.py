@@ -1,8 +1,6 @@
 """The surface moves a constant time after its command."""
 
-from advisor.gap.kit.effect import Effect, always
-from advisor.gap.kit.least import LEAST_S
-from advisor.gap.kit.variant import Values, Variant
+from advisor.gap.kit.effect import LEAST_S, Effect, Values, Variant, always
 from advisor.gap.records.flights import PreparedManeuvers
 from advisor.gap.simulator.layout import INDEX
 from advisor.process.arrays import FloatArray

@@ -8,7 +8,7 @@ import numpy as np
 
 from advisor.gap.fitting.prior import ERROR_IF_WRONG, holding, prior_precision, small_without_alpha
 from advisor.gap.fitting.whitening import Filters, Whitening
-from advisor.gap.kit.variant import Values, Variant
+from advisor.gap.kit.effect import Values, Variant
 from advisor.gap.records.flights import PreparedManeuver, PreparedManeuvers
 from advisor.gap.simulator.layout import DERIVATIVES, ENTRIES, FILTER, INDEX, LAYOUT, NUISANCES, SKEWS
 from advisor.gap.simulator.pack import LANES

@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from advisor.flight.signals.motion import integrated
+from advisor.flight.signals.derived_alpha import integrated
 from advisor.gap.records.flights import PreparedManeuver, PreparedManeuvers
 from advisor.process.arrays import FloatArray
 

@@ -14,8 +14,7 @@ import numpy as np
 from advisor.gap.records.flights import PreparedManeuvers
 from advisor.gap.simulator.layout import INDEX, SPEED, short_period
 from advisor.oem.driven_motion.kalman_filter import Gains, driven_filter, steps_of
-from advisor.oem.driven_motion.linear import Linear
-from advisor.oem.driven_motion.noise import Noise
+from advisor.oem.driven_motion.setting import Linear, Noise
 from advisor.oem.short_period_motion import short_period_motion
 from advisor.oem.turbulence import ALPHA
 from advisor.process.arrays import FloatArray

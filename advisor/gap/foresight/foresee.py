@@ -15,10 +15,10 @@ from advisor.gap.fitting.fit import EffectFit
 from advisor.gap.fitting.problem import EffectProblem
 from advisor.gap.foresight.signatures import Signatures
 from advisor.gap.inference.explanation import least_apart
-from advisor.gap.kit.variant import Variant
+from advisor.gap.kit.effect import Variant
 from advisor.gap.result import VISIBLE, Unseen, spelled
 from advisor.process.arrays import FloatArray
-from advisor.words.quantiles import NORMAL_95
+from advisor.words.quantities import NORMAL_95
 
 CONFUSED_AT = 0.95
 """Cosine between two signatures above which one effect is confused with the other."""

@@ -13,7 +13,7 @@ import numpy as np
 
 from advisor.gap.fitting.fit import EffectFit
 from advisor.gap.fitting.problem import EffectProblem, row_weights
-from advisor.gap.kit.variant import Variant
+from advisor.gap.kit.effect import Variant
 from advisor.process.arrays import FloatArray
 
 _RANK = 1e-7

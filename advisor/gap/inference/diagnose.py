@@ -7,8 +7,7 @@ import numpy as np
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.flight.instruments.kinematics import KinematicCheck
-from advisor.gap.candidates.catalogue import variants_for
-from advisor.gap.candidates.known import beyond_known, beyond_servo
+from advisor.gap.candidates.known import beyond_known, beyond_servo, variants_for
 from advisor.gap.fitting.fit import EffectFit
 from advisor.gap.fitting.holdout import HeldOut
 from advisor.gap.fitting.measure import whole_gap
@@ -22,7 +21,7 @@ from advisor.gap.inference.pitch import PitchFlight, PitchModel
 from advisor.gap.inference.posterior import NONE, relabelled, stated_as
 from advisor.gap.inference.prior import FieldPrior
 from advisor.gap.inference.sizes import with_sizes
-from advisor.gap.kit.variant import Variant
+from advisor.gap.kit.effect import Variant
 from advisor.gap.noise.quiet import quiet_rms
 from advisor.gap.noise.stamps import stamp_power
 from advisor.gap.records.floor import tolerance_of

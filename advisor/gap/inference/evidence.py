@@ -10,11 +10,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from advisor.gap.fitting.fit import EffectFit
-from advisor.gap.fitting.prior import (
-    ERROR_IF_RIGHT,
-    ERROR_IF_WRONG,
-    prior_precision,
-)
+from advisor.gap.fitting.prior import ERROR_IF_RIGHT, ERROR_IF_WRONG, prior_precision
 from advisor.gap.fitting.problem import EffectProblem, SearchPoint
 from advisor.gap.fitting.uncertainty import colour_of
 from advisor.gap.inference.explanation import Evidence

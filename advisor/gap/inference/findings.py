@@ -7,8 +7,7 @@ from advisor.gap.fitting.holdout import HeldOut
 from advisor.gap.fitting.problem import EffectProblem
 from advisor.gap.records.flights import PreparedManeuvers
 from advisor.gap.search.air import MovingAir
-from advisor.gap.uncatalogued.airspeed_scale import AirspeedScale
-from advisor.gap.uncatalogued.weight_check import WeightReading
+from advisor.gap.uncatalogued.weight_check import AirspeedScale, WeightReading
 from advisor.process.arrays import FloatArray
 
 

@@ -1,6 +1,6 @@
 """Laws outside the catalogue that compete with the effects; the likeliest one makes the answer "unknown"."""
 
-from advisor.gap.kit.variant import Variant
+from advisor.gap.kit.effect import Variant
 from advisor.gap.records.flights import PreparedManeuvers
 from advisor.gap.uncatalogued.candidate_laws import laws_for, sentence_of
 from advisor.process.arrays import FloatArray

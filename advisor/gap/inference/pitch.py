@@ -16,7 +16,7 @@ from advisor.gap.inference.posterior import UNKNOWN, stated_as
 from advisor.gap.inference.residual import Residual, residual_of
 from advisor.gap.inference.sizes import natural_nats, natural_shares
 from advisor.gap.inference.stage import AT_THE_FILE, LAWS, REFINED, SAME_OPTIMUM, Pairs, Stage, likeliest
-from advisor.gap.kit.variant import Variant
+from advisor.gap.kit.effect import Variant
 from advisor.gap.result import Cause
 from advisor.gap.search.screen import Screen, Screened
 from advisor.process.arrays import FloatArray

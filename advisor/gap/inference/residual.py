@@ -8,7 +8,7 @@ import numpy as np
 from advisor.gap.fitting.fit import EffectFit
 from advisor.gap.fitting.holdout import mean_squares
 from advisor.gap.fitting.problem import EffectProblem
-from advisor.gap.noise.probes import probe_blocks
+from advisor.gap.noise.quiet import probe_blocks
 from advisor.gap.records.floor import tolerance_of
 from advisor.process.arrays import FloatArray
 

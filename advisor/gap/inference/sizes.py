@@ -9,7 +9,7 @@ from dataclasses import replace
 import numpy as np
 
 from advisor.gap.fitting.prior import derivative_scale
-from advisor.gap.kit.variant import Variant
+from advisor.gap.kit.effect import Variant
 from advisor.gap.records.flights import PreparedManeuvers
 from advisor.gap.simulator.layout import natural_frequency
 from advisor.process.arrays import FloatArray

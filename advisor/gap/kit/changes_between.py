@@ -5,8 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from advisor.gap.kit.effect import ANY
-from advisor.gap.kit.variant import Values, Variant
+from advisor.gap.kit.effect import ANY, Values, Variant
 from advisor.gap.records.flights import PreparedManeuvers
 from advisor.gap.simulator.layout import INDEX
 from advisor.process.arrays import FloatArray

@@ -19,8 +19,6 @@ _LEAST = {"q": 0.3, "a_z": 0.45}
 """Least error from wrong stamps relative to the noise, by channel, above which stamps count as uncertain.
 Only channels that change quickly and have little noise are used. The accelerometer's limit is higher, because
 its signal is rough at every step of the command."""
-_THIRD = np.array([1.0, -3.0, 3.0, -1.0])
-"""Numerical: weights of a third difference."""
 _BINS = 12
 """Numerical: number of bins of a channel's rate for the dependence of the roughness on the rate."""
 _MEDIAN = 0.455
@@ -89,12 +87,13 @@ def _jitter_in(
 ) -> tuple[float, float]:
     """Return the ratio of stamp error power to its limit, and the stamp errors' std, s."""
     c = problem.channels.index(channel)
-    power = float(np.sum(_THIRD**2))
+    third = np.array([1.0, -3.0, 3.0, -1.0])  # weights of a third difference
+    power = float(np.sum(third**2))
     rough, moving = [], []
     for i, flight in enumerate(problem.flights.flights):
         rows = problem.rows(flight)[c]
-        rough.append(np.convolve(fitted.residuals[i][rows], _THIRD, mode="valid") ** 2 / power)
-        moving.append(np.convolve(rates[i][rows] ** 2, _THIRD**2, mode="valid") / power)
+        rough.append(np.convolve(fitted.residuals[i][rows], third, mode="valid") ** 2 / power)
+        moving.append(np.convolve(rates[i][rows] ** 2, third**2, mode="valid") / power)
     y, x = np.concatenate(rough), np.concatenate(moving)
     # Medians over bins of equal count: a step of the command makes a few differences large for another
     # reason.

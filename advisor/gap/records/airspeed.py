@@ -10,8 +10,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from advisor.flight.maneuvers.maneuver import Maneuver
-from advisor.flight.signals.derived_alpha import SLOWEST_FLIGHT_M_S
-from advisor.flight.signals.motion import integrated, speed_rate_at
+from advisor.flight.signals.derived_alpha import SLOWEST_FLIGHT_M_S, integrated, speed_rate_at
 from advisor.oem.airspeed import LARGEST_DISAGREEMENT
 from advisor.process.arrays import FloatArray
 

@@ -9,7 +9,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from advisor.flight.signals.robust import robust_std
+from advisor.flight.signals.record import robust_std
 from advisor.process.arrays import FloatArray
 
 _WEIGHTS = np.array([1.0, -4.0, 6.0, -4.0, 1.0])

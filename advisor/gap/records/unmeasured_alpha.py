@@ -9,7 +9,7 @@ from dataclasses import replace
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.flight.maneuvers.maneuver import Maneuver
-from advisor.flight.signals.renewal import renewed
+from advisor.flight.signals.record import renewed
 from advisor.gap.simulator.layout import OUTPUTS
 from advisor.oem.alpha_use import can_do_without, infer, why_not_measured
 

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from advisor.flight.maneuvers.maneuver import Maneuver
-from advisor.flight.signals.motion import channel_at, integrated, path_turning, speed_rate_at
+from advisor.flight.signals.derived_alpha import channel_at, integrated, path_turning, speed_rate_at
 from advisor.gap.decision import SIGMAS
 from advisor.process.arrays import FloatArray
 

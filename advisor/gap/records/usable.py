@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from advisor.flight.maneuvers.maneuver import Maneuver
-from advisor.flight.signals.renewal import renewed
+from advisor.flight.signals.record import renewed
 from advisor.gap.records.unmeasured_alpha import is_known_by_motion, outputs_with
 from advisor.oem.lost_input import LOST_INTERVAL
 from advisor.oem.rows import Signal

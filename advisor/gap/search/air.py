@@ -9,14 +9,20 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from advisor.flight.signals.robust import robust_std
+from advisor.flight.signals.record import robust_std
 from advisor.gap.decision import CERTAIN
 from advisor.gap.fitting.fit import EffectFit
 from advisor.gap.fitting.holdout import mean_squares
 from advisor.gap.fitting.problem import EffectProblem
-from advisor.gap.noise.probes import DisturbanceCourse, disturbance_courses
-from advisor.gap.noise.quiet import instrument_noise, quiet_rows, rows_of, with_floor
-from advisor.gap.noise.shown_gust import largest_gust
+from advisor.gap.noise.quiet import (
+    DisturbanceCourse,
+    disturbance_courses,
+    instrument_noise,
+    largest_gust,
+    quiet_rows,
+    rows_of,
+    with_floor,
+)
 from advisor.model.outputs import OUTPUTS
 from advisor.oem.turbulence import KNOTS_S, Turbulence, find_turbulence
 from advisor.process.arrays import FloatArray

@@ -5,9 +5,8 @@ from dataclasses import replace
 import numpy as np
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.gap.candidates import nuisances
-from advisor.gap.candidates.catalogue import variants_for
-from advisor.gap.candidates.known import base_entries, changes_in, lasting, with_known
+from advisor.gap.candidates import known
+from advisor.gap.candidates.known import base_entries, changes_in, lasting, variants_for, with_known
 from advisor.gap.effects.actuator_lag import LAG
 from advisor.gap.effects.transport_delay import DELAY
 from advisor.gap.fitting.fit import EffectFit, evidence_of, fit, rms_of
@@ -72,23 +71,23 @@ def everywhere(point: SearchPoint, flights: PreparedManeuvers, latency_s: float 
     The latency is one loop of the autopilot; ``with_telemetry`` widens it after the command's motion is
     known.
     """
-    late = point.with_effect(nuisances.LOOP, (latency_s,)).with_effect(nuisances.GYRO, (0.0,))
+    late = point.with_effect(known.LOOP, (latency_s,)).with_effect(known.GYRO, (0.0,))
     if flights.alpha_is_derived:
-        own = nuisances.filters(flights)
+        own = known.filters(flights)
         late = late.with_effect(own, (0.0,) * len(own.names))
-        late = late.with_effect(nuisances.OWN_ALPHA, (0.0, 0.0))
+        late = late.with_effect(known.OWN_ALPHA, (0.0, 0.0))
     elif {"alpha", "theta"} & set(flights.channels):
-        late = late.with_effect(nuisances.IMU, (0.0,))
+        late = late.with_effect(known.IMU, (0.0,))
     if "a_z" in flights.channels:
-        late = late.with_effect(nuisances.AIRSPEED, (0.0,))
-    if nuisances.rolls(flights):
-        late = late.with_effect(nuisances.INERTIA, (0.0, 0.0))
-    return late.with_effect(nuisances.PROPELLER, (0.0, 0.0, 0.0)) if flights.speed_measured else late
+        late = late.with_effect(known.AIRSPEED, (0.0,))
+    if known.rolls(flights):
+        late = late.with_effect(known.INERTIA, (0.0, 0.0))
+    return late.with_effect(known.PROPELLER, (0.0, 0.0, 0.0)) if flights.speed_measured else late
 
 
 def with_telemetry(point: SearchPoint, flights: PreparedManeuvers) -> SearchPoint:
     """Return the point with the delay that telemetry may cause between command stamps and effect."""
-    effects = tuple(nuisances.latency(flights) if e is nuisances.LOOP else e for e in point.effects)
+    effects = tuple(known.latency(flights) if e is known.LOOP else e for e in point.effects)
     return replace(point, effects=effects)
 
 
@@ -99,7 +98,7 @@ def fit_telemetry(problem: EffectProblem, fitted: EffectFit, noise: FloatArray) 
     Edges of the command move with the delay, so the cost has local minima.
     """
     point = with_telemetry(fitted.point, problem.flights)
-    k = point.index_of(nuisances.LOOP.effect)
+    k = point.index_of(known.LOOP.effect)
     best = fit(problem, point, noise)
     for start in point.effects[k].bounds[0]:
         values = (*point.values[:k], np.array([start]), *point.values[k + 1 :])

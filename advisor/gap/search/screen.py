@@ -8,7 +8,7 @@ import numpy as np
 from advisor.gap.fitting.fit import EffectFit
 from advisor.gap.fitting.neighbourhood import Neighbourhood, SimulatedPoint
 from advisor.gap.fitting.problem import EffectProblem, SearchPoint
-from advisor.gap.kit.variant import Variant
+from advisor.gap.kit.effect import Variant
 from advisor.process.arrays import FloatArray
 
 _STEPS = 4

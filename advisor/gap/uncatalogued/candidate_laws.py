@@ -14,7 +14,7 @@ from functools import partial
 import numpy as np
 
 from advisor.gap.kit.changes_between import steps_in
-from advisor.gap.kit.variant import Values, Variant
+from advisor.gap.kit.effect import Values, Variant
 from advisor.gap.records.flights import PreparedManeuvers
 from advisor.gap.simulator.layout import FILTER, INDEX, OUTPUTS
 from advisor.process.arrays import FloatArray

@@ -9,8 +9,7 @@ import numpy as np
 from advisor.aircraft.aircraft import Aircraft
 from advisor.flight.instruments.kinematics import KinematicCheck
 from advisor.gap.alternative import Alternative
-from advisor.gap.candidates.catalogue import variants_for
-from advisor.gap.candidates.nuisances import PROPELLER
+from advisor.gap.candidates.known import PROPELLER, variants_for
 from advisor.gap.decision import CERTAIN, Decision, differs_from_zero
 from advisor.gap.effects import EFFECTS
 from advisor.gap.fitting.fit import EffectFit
@@ -28,7 +27,7 @@ from advisor.gap.records.floor import tolerance_of
 from advisor.gap.result import Cause, Diagnosis, Gap, GapVerdict, Where, ranked
 from advisor.gap.search.air import SoughtAir
 from advisor.gap.simulator.layout import DERIVATIVES
-from advisor.gap.uncatalogued.airspeed_scale import airspeed_excess, airspeed_scale_of
+from advisor.gap.uncatalogued.weight_check import airspeed_excess, airspeed_scale_of
 from advisor.gap.verdict.causes import causes_of
 from advisor.gap.verdict.holdout_numbers import (
     as_measured,

@@ -17,7 +17,7 @@ from advisor.gap.inference.findings import Findings
 from advisor.gap.inference.offset import OFFSET, cause_of_offset
 from advisor.gap.inference.pitch import PitchModel
 from advisor.gap.inference.posterior import Posterior, stated_as
-from advisor.gap.kit.variant import Variant
+from advisor.gap.kit.effect import Variant
 from advisor.gap.result import Cause, Gap, Value
 from advisor.gap.verdict.holdout_numbers import without_air
 from advisor.process.arrays import FloatArray

@@ -12,12 +12,12 @@ import numpy as np
 from advisor.gap.fitting.fit import EffectFit
 from advisor.gap.fitting.problem import EffectProblem, row_weights
 from advisor.gap.fitting.step import factor
-from advisor.gap.noise.probes import responses_at_knots
+from advisor.gap.noise.quiet import responses_at_knots
 from advisor.gap.result import MissingLaw, Value
 from advisor.oem.arrow import solved
 from advisor.oem.turbulence import KNOTS_S
 from advisor.process.arrays import FloatArray
-from advisor.words.quantiles import NORMAL_95
+from advisor.words.quantities import NORMAL_95
 
 _EQUATIONS = {
     "force_equation": "Z", "moment_equation": "M",

@@ -5,8 +5,8 @@ from collections.abc import Mapping
 import numpy as np
 from numpy.typing import ArrayLike
 
-from advisor.mavlink.records.dataflash import RecordTable, parameters_in
 from advisor.mavlink.records.equivalent import MAV_PARAM_TYPE_REAL32, MAV_TYPE_FIXED_WING, system_id
+from advisor.mavlink.records.stretches import RecordTable, parameters_in
 from advisor.process.arrays import IntArray
 
 VEHICLE_RECORDS: dict[str, set[str]] = {

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from advisor.mavlink.records.dataflash import RecordTable
+from advisor.mavlink.records.stretches import RecordTable
 from advisor.process.arrays import FloatArray, IntArray
 
 RATE_RECORDS: dict[str, set[str]] = {

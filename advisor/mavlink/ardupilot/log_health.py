@@ -10,7 +10,7 @@ import numpy as np
 
 from advisor.flight.maneuvers.markers import SYSTEM_ID_BEGINS, SYSTEM_ID_ENDS
 from advisor.mavlink.ardupilot.sensors import Said
-from advisor.mavlink.records.dataflash import RecordTable
+from advisor.mavlink.records.stretches import RecordTable
 
 HEALTH_RECORDS: dict[str, set[str]] = {"DSF": {"Dp"}}
 """Necessary fields of the records about the log's own health (ArduPilot log message DSF)."""

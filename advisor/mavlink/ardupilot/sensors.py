@@ -6,10 +6,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from advisor.mavlink.records.dataflash import RecordTable
 from advisor.mavlink.records.equivalent import latest
+from advisor.mavlink.records.stretches import RecordTable
 from advisor.process.arrays import FloatArray, IntArray
-from advisor.words.digits import clock, stretch
+from advisor.words.quantities import clock, stretch
 
 BoolArray = NDArray[np.bool_]
 _MOST_CHANGES = 5

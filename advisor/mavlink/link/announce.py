@@ -5,10 +5,9 @@ from typing import Any
 
 from pymavlink.dialects.v20 import ardupilotmega as dialect
 
-from advisor.mavlink.link.connection import parse_connection
 from advisor.mavlink.link.outgoing import Ids, Packer, Talker
-from advisor.mavlink.link.transports import ConnectionCutError, Transport, open_transport
-from advisor.words.ascii_output import plain
+from advisor.mavlink.link.transports import ConnectionCutError, Transport, open_transport, parse_connection
+from advisor.words.problems import plain
 
 CHUNK_BYTES = 50
 MOST_CHUNKS = 4

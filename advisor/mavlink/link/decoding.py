@@ -2,8 +2,7 @@
 
 from dataclasses import replace
 
-from advisor.aircraft.aircraft import Aircraft
-from advisor.aircraft.controls import Elevator
+from advisor.aircraft.aircraft import Aircraft, Elevator
 from advisor.flight.signals.messages import Columns
 from advisor.flight.stream.identity import Identity
 from advisor.flight.vehicle.pieces import pieces

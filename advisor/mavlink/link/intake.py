@@ -7,8 +7,7 @@ from pymavlink.dialects.v20 import ardupilotmega as dialect
 from advisor.flight.vehicle.vehicle import is_aircraft
 from advisor.mavlink.link.health import LinkCounters
 from advisor.mavlink.link.transports import Peer
-from advisor.mavlink.wire.framing import Frame, FrameCutter
-from advisor.mavlink.wire.signing import RADIO_STATUS, SignatureCheck
+from advisor.mavlink.wire.framing import RADIO_STATUS, Frame, FrameCutter, SignatureCheck
 
 HEARTBEAT = dialect.MAVLINK_MSG_ID_HEARTBEAT
 MOST_PEERS = 64

@@ -19,10 +19,10 @@ from pathlib import Path
 from queue import Empty, SimpleQueue
 from threading import Thread
 
-from advisor.mavlink.link import running_links
+from advisor.mavlink.link import link_process
 from advisor.mavlink.link.announce import Announcer, SeparateConnection
 from advisor.mavlink.link.inquiry import Inquiry
-from advisor.mavlink.link.keeping import (
+from advisor.mavlink.link.kept_link import (
     AnnounceOrder,
     CallOrder,
     Heard,
@@ -247,8 +247,8 @@ class Keeper:
             link = self._keeping
             alone = self._guards == 0
             with contextlib.suppress(OSError):
-                running_links.note(
-                    running_links.RunningLink(os.getpid(), link.master, self.recording, link.door, alone)
+                link_process.note(
+                    link_process.RunningLink(os.getpid(), link.master, self.recording, link.door, alone)
                 )
 
 
@@ -283,7 +283,7 @@ def main() -> None:
     try:
         keeper.run()
     finally:
-        running_links.forget(os.getpid())
+        link_process.forget(os.getpid())
         keeping.door.clear()
 
 

@@ -4,8 +4,7 @@ import contextlib
 import time
 from threading import Event
 
-from advisor.mavlink.link.connection import Address
-from advisor.mavlink.link.transports import ConnectionCutError, Peer, Transport, open_transport
+from advisor.mavlink.link.transports import Address, ConnectionCutError, Peer, Transport, open_transport
 from advisor.words.problems import UnusableInputError
 
 REOPEN_EVERY_S = 1.0

@@ -17,9 +17,8 @@ from queue import Empty, Full, Queue
 from typing import TYPE_CHECKING, Self
 
 from advisor.flight.signals.messages import Columns
-from advisor.flight.vehicle.breaks import DOWN
 from advisor.flight.vehicle.following import FOLLOW, TAKE
-from advisor.mavlink.link.connection import parse_connection
+from advisor.flight.vehicle.pieces import DOWN
 from advisor.mavlink.link.health import LinkStatistics
 from advisor.mavlink.link.inquiry import Inquiry
 from advisor.mavlink.link.intake import Intake
@@ -27,10 +26,9 @@ from advisor.mavlink.link.line import Line
 from advisor.mavlink.link.link_watch import LinkWatch
 from advisor.mavlink.link.outgoing import OWN_COMPONENT, OWN_SYSTEM, Conversation, Heartbeat, Ids, Talker
 from advisor.mavlink.link.recorder import Recorder
-from advisor.mavlink.link.transports import ConnectionCutError
-from advisor.mavlink.wire.framing import CRC_EXTRA, Frame
-from advisor.mavlink.wire.signing import SignatureCheck
-from advisor.words.ascii_output import printable
+from advisor.mavlink.link.transports import ConnectionCutError, parse_connection
+from advisor.mavlink.wire.framing import CRC_EXTRA, Frame, SignatureCheck
+from advisor.words.problems import printable
 
 _ATTITUDE, _VFR_HUD = 30, 74
 

@@ -7,7 +7,7 @@ from threading import Event, Thread
 from typing import Self
 
 from advisor.mavlink.link.health import LinkStatistics, ReportedHealth
-from advisor.mavlink.link.keeping import AnnounceOrder, Door, Request, Told
+from advisor.mavlink.link.kept_link import AnnounceOrder, Door, Request, Told
 
 LOOK_EVERY_S = 0.25
 """Longest wait for a report, and time between two attempts to connect, s. Reports come every 0.2 s."""

@@ -7,8 +7,7 @@ from typing import Any
 from pymavlink.dialects.v20 import ardupilotmega as dialect
 
 from advisor.mavlink.link.intake import HEARTBEAT
-from advisor.mavlink.wire.framing import Frame
-from advisor.mavlink.wire.signing import signing_time
+from advisor.mavlink.wire.framing import Frame, signing_time
 
 OWN_SYSTEM = 254  # ground stations use 255; two on one id cause trouble
 OWN_COMPONENT = dialect.MAV_COMP_ID_MISSIONPLANNER

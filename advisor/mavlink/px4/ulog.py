@@ -15,12 +15,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from advisor.flight.signals.attitude import euler_angles
+from advisor.flight.signals.clocks import euler_angles
 from advisor.flight.signals.messages import Columns
 from advisor.mavlink.px4 import px4_vehicle
-from advisor.mavlink.px4.px4_air import air
-from advisor.mavlink.px4.px4_outputs import outputs
-from advisor.mavlink.px4.px4_topics import (
+from advisor.mavlink.px4.px4_outputs import air, outputs
+from advisor.mavlink.px4.px4_vehicle import (
     TOPICS,
     TimedMessages,
     Topic,
@@ -32,14 +31,14 @@ from advisor.mavlink.px4.px4_topics import (
     sampled_us,
     samples_of,
     topics_of,
+    unix_time_base_s,
     vector,
 )
-from advisor.mavlink.px4.px4_vehicle import unix_time_base_s
 from advisor.mavlink.records.equivalent import latest, message, milliseconds, side_by_side, system_id
 from advisor.process.arrays import FloatArray, IntArray
-from advisor.words.digits import clock
 from advisor.words.mends import mends_of, sentence
 from advisor.words.problems import UnusableInputError
+from advisor.words.quantities import clock
 
 _ESTIMATES = {
     "vehicle_attitude": "estimator_attitude",

@@ -13,7 +13,7 @@ from advisor.flight.signals.messages import Columns
 from advisor.mavlink.wire import arrivals
 from advisor.mavlink.wire import scan as kernel
 from advisor.mavlink.wire.definitions import DEFINITIONS, Definition
-from advisor.mavlink.wire.signing import RADIO_STATUS, SignatureCheck, SignatureVerdict
+from advisor.mavlink.wire.framing import RADIO_STATUS, SignatureCheck, SignatureVerdict
 
 _SOURCES = 1 << 16
 

@@ -22,8 +22,7 @@ from advisor.oem.descent import descended
 from advisor.oem.estimate import ChannelFit, NoEstimate
 from advisor.oem.estimator import channel_fits
 from advisor.oem.flying_qualities import Quality
-from advisor.oem.gained import told, without_term, without_terms
-from advisor.oem.identifiability import correlated
+from advisor.oem.identifiability import correlated, told, without_term, without_terms
 from advisor.oem.prediction import prediction_band
 from advisor.oem.prior import Priors
 from advisor.oem.scatter_between import widened_by_scatter

@@ -10,7 +10,7 @@ from advisor.model.axis_response import respond_axis
 from advisor.oem.axis.parameter import Parameter
 from advisor.oem.axis.problem import TERM, AxisAssembly, AxisProblem, causes_of, lay_out
 from advisor.oem.descent import Response
-from advisor.oem.driven_motion.linear import Linear
+from advisor.oem.driven_motion.setting import Linear
 from advisor.oem.instrument_columns import STEP
 from advisor.oem.rows import Signal
 from advisor.oem.solution import Solution

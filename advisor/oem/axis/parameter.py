@@ -15,7 +15,7 @@ from typing import Protocol, Self, TypeVar
 import numpy as np
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.flight.instruments.lateness import lateness_std
+from advisor.flight.instruments.delayed_fit import lateness_std
 from advisor.model.axis import Place
 from advisor.oem.axis.problem import COMMAND, TERM, AxisProblem, AxisRecord
 from advisor.oem.extra import Prior

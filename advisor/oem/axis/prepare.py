@@ -8,10 +8,9 @@ import numpy as np
 from advisor.aircraft.added_term import AddedTerm
 from advisor.aircraft.aircraft import Aircraft
 from advisor.flight.maneuvers.maneuver import Maneuver
-from advisor.flight.maneuvers.sines import command_of
+from advisor.flight.maneuvers.stepped_input import command_of
 from advisor.flight.signals.derived_alpha import SLOWEST_FLIGHT_M_S
-from advisor.flight.signals.record import Channel
-from advisor.flight.signals.renewal import renewed
+from advisor.flight.signals.record import Channel, renewed
 from advisor.model.axis import Axis
 from advisor.oem.airspeed import airspeed
 from advisor.oem.alpha_use import FEWEST_SAMPLES, can_do_without, has, infer, why_left_out

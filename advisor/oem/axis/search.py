@@ -21,7 +21,7 @@ from advisor.oem.axis.problem import AxisProblem
 from advisor.oem.axis.start import starting_point
 from advisor.oem.descent import Fit, descended
 from advisor.oem.driven_motion.estimate import driven
-from advisor.oem.driven_motion.noise import Noise
+from advisor.oem.driven_motion.setting import Noise
 from advisor.oem.estimate import NoEstimate
 from advisor.oem.evaluation import share_of
 from advisor.oem.identifiability import LARGEST_ERROR
@@ -29,7 +29,7 @@ from advisor.oem.prior import Priors
 from advisor.oem.profile import Posterior, profiled
 from advisor.oem.solution import RUNS_AWAY, Solution, evaluate, refused
 from advisor.process.arrays import FloatArray
-from advisor.words.quantiles import NORMAL_95
+from advisor.words.quantities import NORMAL_95
 
 FIRST_LOOK = 8
 """Iterations of the first fit, whose residuals give the first colour of the noise. With servos and clocks

@@ -14,7 +14,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from advisor.flight.signals.motion import integrated
+from advisor.flight.signals.derived_alpha import integrated
 from advisor.model.axis import CONSTANT, SINE, TURN, Around
 from advisor.oem.axis.problem import AxisProblem, AxisRecord, Surroundings
 from advisor.oem.regression import Equations, regressed

@@ -4,10 +4,9 @@ from collections.abc import Callable, Iterator, Sequence
 
 import numpy as np
 
-from advisor.flight.signals.robust import robust_std
+from advisor.flight.signals.record import robust_std
 from advisor.oem.arrow import solved_within
-from advisor.oem.driven_motion.noise import Noise
-from advisor.oem.driven_motion.setting import Setting
+from advisor.oem.driven_motion.setting import Noise, Setting
 from advisor.process.arrays import FloatArray
 
 Terms = Callable[[Sequence[Noise]], tuple[FloatArray, FloatArray]]

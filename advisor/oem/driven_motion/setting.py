@@ -1,20 +1,122 @@
-"""Residuals, sensitivities and linear motions of a problem at one setting of all parameters."""
+"""Residuals, sensitivities, noise and linear motions of a problem at one setting of all parameters."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cache
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, Protocol, Self
 
 import numpy as np
 
 from advisor.model.response import Index
+from advisor.oem.descent import Motion
 from advisor.oem.driven_motion.kalman_filter import Gains, driven_filter, filtered_by_each, steps_of
-from advisor.oem.driven_motion.linear import DrivenMotion, Linear
-from advisor.oem.driven_motion.noise import RANGE, Noise
 from advisor.oem.extra import Extra, Parameter
 from advisor.oem.prior import Priors
 from advisor.oem.rows import Laid
 from advisor.process.arrays import FloatArray
+
+
+class Linear(NamedTuple):
+    """Linearisation of a fitted motion with s states and o outputs."""
+
+    matrix: FloatArray
+    """Shape (s, s): rates of the states by the states."""
+    seen: FloatArray
+    """Shape (o, s): outputs by the states."""
+    air: FloatArray
+    """Shape (s,): rates of the states by the gust's angle of incidence, 1/s."""
+    air_seen: FloatArray
+    """Shape (o,): outputs by the gust's angle of incidence."""
+    forced: Index
+    """Indices of the states whose rates contain a force."""
+
+    @property
+    def all_seen(self) -> FloatArray:
+        """Shape (o, s + 1): outputs by the states and by the gust's angle."""
+        return np.column_stack([self.seen, self.air_seen])
+
+
+class DrivenMotion(Motion, Protocol):
+    """Interface of an axis whose motion unknown forces drive."""
+
+    def linear(self, problem: Any, shared: FloatArray, m: int, /) -> Linear:
+        """Return the linear motion of manoeuvre ``m`` at its mean air speed."""
+
+    def unsure(self, laid: Any, y: FloatArray, /) -> FloatArray:
+        """Return the change (N, k) of the outputs ``y`` by a standard deviation of each instrument quantity
+        that is not estimated."""
+
+
+RANGE = (1e-12, 1e3)
+"""Range of every noise parameter, SI. Without a lower bound the likelihood of data without noise has no
+maximum."""
+_MEMORY_S, _GUST_MEMORY_S = (0.05, 5.0), (0.5, 5.0)
+"""Ranges of the correlation times of coloured noise and of gusts, s. Dryden's lengths are 20 to 600 m near
+the ground, and aircraft pass them at 20 to 130 m/s."""
+GUST, MEMORY, GUST_MEMORY = -3, -2, -1
+"""Indices of the gust and of both correlation times among the logarithms."""
+LEAST_GUST_RAD = 0.0017
+"""Least standard deviation of a reported gust angle, rad: 0.1 deg."""
+
+
+@dataclass(frozen=True, slots=True)
+class Noise:
+    """Noise of the instruments and forces on the motion, as standard deviations and intensities, SI."""
+
+    white: FloatArray
+    """Shape (o,): white noise of each output."""
+    coloured: FloatArray
+    """Shape (o,): coloured noise of each output."""
+    memory_s: float
+    """Correlation time of the coloured noise, s."""
+    drive: FloatArray
+    """Shape (f,): root of the intensity of the white noise on each forced rate; (1,) for equal ones."""
+    gust: float
+    """Standard deviation of the gust's angle of incidence, rad."""
+    gust_memory_s: float
+    """Correlation time of the gust's angle, s."""
+
+    @classmethod
+    def still(cls, white: FloatArray) -> Self:
+        """Return white noise of the instruments, shape (o,), without forces and gusts."""
+        return cls(white, np.full(len(white), RANGE[0]), 0.3, np.array([RANGE[0]]), 0.0, 1.0)
+
+    @property
+    def logarithms(self) -> FloatArray:
+        """Shape (2·o + f + 3,): logarithms of all parameters."""
+        every = [*self.white, *self.coloured, *self.drive, self.gust, self.memory_s, self.gust_memory_s]
+        return np.asarray(np.clip(np.log(np.maximum(every, RANGE[0])), *self.limits))
+
+    @property
+    def limits(self) -> FloatArray:
+        """Shape (2, 2·o + f + 3): least and largest logarithms."""
+        sizes = 2 * len(self.white) + len(self.drive) + 1
+        return np.asarray(np.log(np.array([*[RANGE] * sizes, _MEMORY_S, _GUST_MEMORY_S])).T)
+
+    def at(self, logarithms: FloatArray) -> "Noise":
+        """Return the noise with other parameters, each within its range."""
+        o, values = len(self.white), np.exp(np.clip(logarithms, *self.limits))
+        memories = float(values[-2]), float(values[-1])
+        return Noise(
+            values[:o], values[o : 2 * o], memories[0], values[2 * o : -3], float(values[-3]), memories[1]
+        )
+
+    def driving(
+        self, motion: Linear, start_variance: float = 0.0
+    ) -> tuple[FloatArray, FloatArray, FloatArray]:
+        """Return rates, variances at the start and driving intensities of s states and of the gust's angle.
+
+        The rates are by the states and by the gust's angle, shape (s + 1, s + 1); the others have (s + 1,).
+        Every state has the variance ``start_variance`` at the start.
+        """
+        s = len(motion.matrix)
+        matrix, begun, drive = np.zeros((s + 1, s + 1)), np.zeros(s + 1), np.zeros(s + 1)
+        matrix[:s, :s], matrix[:s, s], matrix[s, s] = motion.matrix, motion.air, -1.0 / self.gust_memory_s
+        begun[:s] = start_variance
+        begun[s], drive[s] = self.gust**2, 2.0 * self.gust**2 / self.gust_memory_s
+        drive[motion.forced] = self.drive**2
+        return matrix, begun, drive
+
 
 STAMP_S = 1e-3 / 12.0**0.5
 """Standard deviation of a stamp in whole milliseconds, s."""

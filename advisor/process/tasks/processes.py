@@ -1,4 +1,4 @@
-"""Tasks in processes. Tasks in several processes. A process that dies loses only its own task."""
+"""Tasks one after another or in several processes. A process that dies loses only its own task."""
 
 import multiprocessing
 import os
@@ -7,15 +7,62 @@ import threading
 import warnings
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, Executor, Future, ProcessPoolExecutor, wait
+from functools import partial
 from multiprocessing import resource_tracker
 from multiprocessing.connection import wait as wait_for
-from typing import TypeVar
+from typing import Protocol, TypeVar
 
 from advisor.process.children import spawning
 from advisor.process.tasks.threads import pin_linear_algebra
 
 T = TypeVar("T")
 R = TypeVar("R")
+
+
+class Runner(Protocol):
+    """Does all tasks, and yields each with its result, or with the error that ended it, as completed."""
+
+    def __call__(self, work: Callable[[T], R], tasks: Sequence[T]) -> Iterator[tuple[T, R | Exception]]:
+        """Do all tasks. The work, the tasks and the results can be pickled."""
+
+
+def run_here(work: Callable[[T], R], tasks: Sequence[T]) -> Iterator[tuple[T, R | Exception]]:
+    """Do one task after another in this process."""
+    for task in tasks:
+        result: R | Exception
+        try:
+            result = work(task)
+        except Exception as error:
+            result = error
+        yield task, result
+
+
+def results_in_order(
+    run: Runner, work: Callable[[T], R], tasks: Sequence[T], tell: Callable[[int], None]
+) -> list[R]:
+    """Do all tasks and return their results in the order of the tasks, whatever the order of completion.
+
+    Parameters
+    ----------
+    tell
+        Called with the index of each task in ``tasks`` when the task is done.
+
+    Raises
+    ------
+    Exception
+        The first error that ended a task.
+    """
+    results: dict[int, R] = {}
+    for (place, _), result in run(partial(_unnumbered, work), list(enumerate(tasks))):
+        if isinstance(result, Exception):
+            raise result
+        results[place] = result
+        tell(place)
+    return [results[place] for place in range(len(tasks))]
+
+
+def _unnumbered(work: Callable[[T], R], numbered: tuple[int, T]) -> R:
+    return work(numbered[1])
 
 
 def processes(workers: int) -> Executor:

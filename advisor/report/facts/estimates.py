@@ -9,9 +9,7 @@ from math import isfinite, nan
 from advisor.campaign.state import CampaignState, JudgedManeuver, LateralState
 from advisor.oem.axis.estimate import AxisEstimate
 from advisor.oem.estimate import Estimate, TermEstimate
-from advisor.words.digits import decimals_for, maneuvers_said, signed, with_half
-from advisor.words.quantiles import NORMAL_95
-from advisor.words.quantities import DEG, symbol
+from advisor.words.quantities import DEG, NORMAL_95, decimals_for, maneuvers_said, signed, symbol, with_half
 from advisor.words.quantities import PARAMETERS as PITCH
 from advisor.words.quantities import SIDE_PARAMETERS as SIDE
 

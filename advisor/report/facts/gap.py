@@ -7,9 +7,16 @@ from advisor.gap.alternative import Weighed
 from advisor.gap.result import ComparedDerivative, Gap, MissingLaw, Shrink, Where
 from advisor.gap.verdict.text import in_words, place
 from advisor.report.facts.sizes import before_after, has_grown, short
-from advisor.words.digits import decimals_for, maneuvers_said, signed, with_half
-from advisor.words.quantiles import NORMAL_95
-from advisor.words.quantities import CHANNELS, PARAMETERS, SIDE_PARAMETERS
+from advisor.words.quantities import (
+    CHANNELS,
+    NORMAL_95,
+    PARAMETERS,
+    SIDE_PARAMETERS,
+    decimals_for,
+    maneuvers_said,
+    signed,
+    with_half,
+)
 
 _QUANTITIES = {**PARAMETERS, **SIDE_PARAMETERS}
 _WORTH_SAYING = 0.005

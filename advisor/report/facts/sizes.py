@@ -4,9 +4,7 @@ import math
 from collections.abc import Mapping
 
 from advisor.gap.result import Value
-from advisor.words.digits import with_half
-from advisor.words.quantiles import NORMAL_95
-from advisor.words.quantities import PARAMETERS
+from advisor.words.quantities import NORMAL_95, PARAMETERS, with_half
 
 _DEG = math.degrees(1.0)
 _ENDINGS = {

@@ -6,10 +6,9 @@ from functools import wraps
 from typing import Any, Literal
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.analysis.vibration import FieldSum, Vibration
 from advisor.campaign.state import CampaignState
-from advisor.flight.signals.power_on import PowerOn
-from advisor.report.table import Table
+from advisor.flight.signals.track import PowerOn
+from advisor.report.text import Table
 
 Document = Mapping[str, Any]
 
@@ -46,10 +45,6 @@ class Content:
     origin: Origin
     begun: tuple[str, ...] = ()
     """Date and time at which each log began."""
-    vibration: tuple[Vibration | None, ...] = ()
-    """Vibration of each log; None for an unreadable log."""
-    fields: tuple[tuple[FieldSum, ...], ...] = ()
-    """Fields of each log that were asked for by name."""
 
 
 @dataclass(frozen=True, slots=True)

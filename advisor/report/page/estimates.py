@@ -1,4 +1,4 @@
-"""Estimates with their intervals, and the stop criterion after each manoeuvre."""
+"""Manoeuvres, estimates with their intervals, and the stop criterion after each manoeuvre."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from math import sqrt
@@ -17,9 +17,10 @@ from advisor.report.facts.estimates import (
     of_one,
     structure_lines,
 )
-from advisor.report.page.blocks import Block, Content, Figure, Gallery, Paragraph, listing, section
+from advisor.report.page.blocks import Block, Content, Figure, Gallery, Paragraph, Section, listing, section
 from advisor.report.page.drawing import BLACK, BLUE, ORANGE, log_ticks, picture
-from advisor.report.table import Table, structure_table
+from advisor.report.text import Table, caution_lines, structure_table
+from advisor.words.quantities import CLOCK, clock
 from advisor.words.quantities import PARAMETERS as QUANTITIES
 
 _MOST_LABELS = 16
@@ -173,3 +174,40 @@ def _range(values: Sequence[float]) -> tuple[float, float]:
     low, high = 0.6 * min(values), 1.8 * max(values)
     widen = max(1.0, sqrt(10.0 * low / high))
     return low / widen, high * widen
+
+
+_HYPHEN, _SPACE = "\N{NON-BREAKING HYPHEN}", "\N{NO-BREAK SPACE}"
+ANCHORS = {"": "maneuver-list", "R": "lateral-maneuvers"}
+"""Table that lists a manoeuvre, by the letter before its number: R for roll and yaw."""
+HEAD = ("no.", "start", "input", "mode", "verdict", "why")
+
+
+def maneuvers(content: Content) -> Section:
+    """Return a table with a row for each manoeuvre, then cautions that reject no manoeuvre."""
+    listed = content.analysis["maneuvers"]
+    rows = tuple(maneuver_row(maneuver, several=len(content.names) > 1) for maneuver in listed)
+    table = Table(
+        ANCHORS[""], f"Every manoeuvre in the order flown; times are {CLOCK}.", HEAD, rows,
+        frozenset({0, 1}), anchored=True,
+    )  # fmt: skip
+    return Section("maneuvers", "Manoeuvres", (table, *listing(caution_lines(content.state.maneuvers))))
+
+
+def maneuver_row(maneuver: Mapping[str, Any], *, several: bool) -> tuple[str, ...]:
+    """Return number, start, input, mode, verdict and sentence of a manoeuvre. With several logs, add the name
+    of its log.
+    """
+    accepted = maneuver["verdict"] == "accepted"
+    why = [maneuver["sentence"], *(f"note: {note}" for note in maneuver.get("notes", ()))]
+    if maneuver.get("excluded_because") is not None:
+        why.append(f"excluded by hand: {maneuver['excluded_because']}")
+    if several and "log" in maneuver:
+        why.append(f"({maneuver['log']})")
+    return (
+        str(maneuver["number"]),
+        clock(maneuver["start_boot_s"]),
+        maneuver["input"].replace("-", _HYPHEN).replace(" ", _SPACE),
+        maneuver["mode"],
+        f"✓{_SPACE}accepted" if accepted else f"✗{_SPACE}rejected",
+        " ".join(why),
+    )

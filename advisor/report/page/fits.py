@@ -12,8 +12,7 @@ from advisor.flight.signals.record import Channel
 from advisor.oem.estimate import ChannelFit, Estimate
 from advisor.report.page.blocks import Block, Content, Figure, Gallery, Paragraph, section
 from advisor.report.page.drawing import BLACK, BLUE, GREY, ORANGE, picture
-from advisor.words.quantiles import NORMAL_95
-from advisor.words.quantities import CHANNELS
+from advisor.words.quantities import CHANNELS, NORMAL_95
 
 _EXPLAINED = (
     "Grey: measured. Dark dashes: the {model} fitted to this manoeuvre alone. "

@@ -13,15 +13,14 @@ from matplotlib.ticker import FuncFormatter, MaxNLocator
 from matplotlib.transforms import Bbox
 
 from advisor.campaign.state import JudgedManeuver
-from advisor.flight.signals.power_on import PowerOn
 from advisor.flight.signals.record import Channel
+from advisor.flight.signals.track import PowerOn
 from advisor.flight.vehicle.modes import stays
 from advisor.process.arrays import FloatArray
 from advisor.report.page.blocks import Block, Content, Figure, Gallery, section
 from advisor.report.page.drawing import BLACK, BLUE, LAYER, ORANGE, picture
-from advisor.report.page.maneuvers import ANCHORS
-from advisor.words.digits import CLOCK, clock
-from advisor.words.quantities import CHANNELS
+from advisor.report.page.estimates import ANCHORS
+from advisor.words.quantities import CHANNELS, CLOCK, clock
 
 _OF_PITCH, _OF_SIDE, _OF_BOTH = (
     ("elevator", "alpha", "q"),

@@ -1,5 +1,6 @@
-"""Turn the data of a flight into the page, as HTML or Markdown."""
+"""The page of a flight from its headline to its appendix, as HTML or Markdown."""
 
+from collections.abc import Iterator
 from functools import partial
 from importlib.resources import files
 from typing import Literal
@@ -7,24 +8,138 @@ from typing import Literal
 from jinja2 import Environment, FunctionLoader, StrictUndefined
 from markupsafe import Markup
 
+from advisor.gap.effects import EFFECTS
+from advisor.oem.notes import FOR_THE_FILE
 from advisor.process.parts import FailedPart, attempt
-from advisor.report.page.appendix import assumptions, fields, provenance, telemetry, vibration
-from advisor.report.page.axes.lateral_section import lateral
-from advisor.report.page.blocks import Block, Content, Paragraph, Part, Section
+from advisor.report.facts.estimates import untold
+from advisor.report.page.blocks import (
+    Block,
+    Content,
+    Document,
+    Paragraph,
+    Part,
+    Section,
+    Verbatim,
+    listing,
+    section,
+)
 from advisor.report.page.drawing import LAYER
-from advisor.report.page.estimates import criterion, estimates
+from advisor.report.page.estimates import criterion, estimates, maneuvers
 from advisor.report.page.fits import fits
 from advisor.report.page.flight_picture import flight_picture
-from advisor.report.page.flying_qualities import flying
-from advisor.report.page.gap import gap
-from advisor.report.page.headline import headline
-from advisor.report.page.maneuvers import maneuvers
+from advisor.report.page.flying_qualities import decided, flying, lateral
+from advisor.report.page.gap import gap, glance
+from advisor.report.text import Table, channel_table, joint_table, message_table
 from advisor.words.quantities import CHANNELS
+
+
+@section("telemetry", "Telemetry")
+def telemetry(content: Content) -> Iterator[Block]:
+    """Yield the doctor's verdict, limits with their remedies, and message rates, log by log."""
+    for flight, (name, doctor) in enumerate(zip(content.names, content.doctor, strict=True)):
+        yield Paragraph(f"{name}: {doctor['verdict']}.")
+        yield from listing([f"{limit['text']}. Fix: {limit['fix']}." for limit in doctor["limits"]])
+        yield from listing(list(doctor.get("notes", ())))
+        if doctor["messages"]:
+            yield message_table(f"messages-{flight}", doctor["messages"])
+
+
+@section("assumptions", "What was assumed")
+def assumptions(content: Content) -> Iterator[Block]:
+    """Yield notes about reading and estimate, then the sources of the channels."""
+    analysis = content.analysis
+    model = analysis["model"]
+    said = [*analysis.get("notes", ()), *analysis["log"]["notes"], *(model["notes"] if model else ())]
+    said = [entered_once(note, content.gap) for note in said]
+    yield from listing(said) or (Paragraph("Nothing beyond the aircraft file was assumed."),)
+    for flight, (name, heard) in enumerate(zip(content.names, content.state.flights, strict=True)):
+        yield channel_table(f"channels-{flight}", f"Channels of {name}.", heard.channels)
+
+
+def entered_once(note: str, gap: Document | None) -> str:
+    """Return a note without its line for the aircraft file, if the diagnosis names the number to enter."""
+    said, line, entry = note.partition(FOR_THE_FILE)
+    causes = gap["causes"] if line and gap is not None and gap["usable"] else ()
+    stated = {EFFECTS[c["effect"]].stated for c in causes if c["in_model"] and c["effect"] in EFFECTS}
+    if all(at is None or not entry.startswith(f"{at[0]}: {{{at[1]}:") for at in stated):
+        return note
+    return f"{said} The section on the gap names the number to enter in the aircraft file."
+
+
+def provenance(content: Content) -> Section:
+    """Return the section with hashes, versions and the command that repeats the page."""
+    origin = content.origin
+    return Section(
+        "origin",
+        "Where this comes from",
+        (
+            Table("files", "Input files.", ("file", "SHA-256"), tuple(origin.files.items())),
+            Table("versions", "Versions.", ("program", "version"), tuple(origin.versions.items())),
+            Paragraph("This command repeats the page:"),
+            Verbatim(origin.command),
+        ),
+    )
+
+
+@section("verdict", "Verdict")
+def headline(content: Content) -> Iterator[Block]:
+    """Yield flights, decision and evidence, estimates, and gap."""
+    verdict, maneuvers = content.analysis["flight_test"], content.analysis["maneuvers"]
+    accepted = [m["number"] for m in maneuvers if m["verdict"] == "accepted"]
+    yield _flown(content)
+    state = content.state
+    sideways = state.tested_sideways is not None
+    yield from decided(state)
+    side = state.lateral_alone
+    if side is not None and (glance_at := joint_table(side, content.aircraft.model, "lateral-glance")):
+        yield glance_at
+    if sideways:
+        yield Paragraph(verdict["sentence"])
+    if maneuvers and not sideways:
+        yield Paragraph(
+            f"{len(accepted)} of {len(maneuvers)} manoeuvres are accepted. The rule {verdict['rule']} "
+            f"decides: {_criterion(verdict['criterion_percent'], verdict['limit_percent'])}."
+        )
+    joint = joint_table(state, content.aircraft.model)
+    if joint is not None and state.model is not None:
+        yield joint
+        yield from listing(untold(state.model))
+    gap = content.gap
+    if gap is not None and gap["usable"]:
+        yield from glance(gap)
+
+
+def _flown(content: Content) -> Table:
+    mass = content.aircraft.reference.mass_kg
+    weighs = "mass not given" if mass is None else f"{mass:g} kg"
+    rows = []
+    for flight, name in enumerate(content.names):
+        heard = next((log for log in content.state.flights if log.flight == flight), None)
+        vehicle = heard.vehicle if heard is not None else None
+        minutes, seconds = divmod(round(heard.duration_s), 60) if heard is not None else (0, 0)
+        rows.append(
+            (
+                name,
+                content.begun[flight] if flight < len(content.begun) else "–",
+                f"{minutes} min {seconds} s",
+                str(vehicle) if vehicle is not None else "–",
+                (vehicle.firmware if vehicle is not None else None) or "–",
+            )
+        )
+    head = ("log", "began", "duration", "vehicle", "firmware")
+    return Table("flown", f"{content.aircraft.name}, {weighs}.", head, tuple(rows))
+
+
+def _criterion(value: float | None, limit: float) -> str:
+    if value is None:
+        return f"its criterion has no value yet (limit {limit:g} %)"
+    return f"its criterion is {value:.1f} % (limit {limit:g} %)"
+
 
 PageFormat = Literal["html", "md"]
 _PARTS: tuple[Part, ...] = (
-    headline, flight_picture, gap, estimates, criterion, flying, maneuvers, fits, lateral, fields,
-    vibration, telemetry, assumptions, provenance,
+    headline, flight_picture, gap, estimates, criterion, flying, maneuvers, fits, lateral,
+    telemetry, assumptions, provenance,
 )  # fmt: skip
 
 _OF_PITCH = frozenset({estimates, criterion, flying, maneuvers, fits})

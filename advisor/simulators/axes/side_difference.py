@@ -10,8 +10,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from advisor.aircraft.aircraft import Aircraft
-from advisor.aircraft.controls import SideControl
+from advisor.aircraft.aircraft import Aircraft, SideControl
 from advisor.flight.maneuvers.maneuver import Maneuver
 from advisor.gap.effects.actuator_lag import LAG
 from advisor.gap.effects.transport_delay import DELAY
@@ -31,7 +30,7 @@ from advisor.simulators.as_given import without
 from advisor.simulators.interface import control_fault, side_fault
 from advisor.simulators.protocol import CONTROLS, Condition, Inputs, Progress, Replay, Simulator
 from advisor.words.problems import UnusableInputError
-from advisor.words.quantiles import NORMAL_95
+from advisor.words.quantities import NORMAL_95
 
 STEP_S = 0.02
 """Interval of the inputs and of the replay's stamps, s, as for the pitch axis."""

@@ -3,11 +3,10 @@
 from textual.app import ComposeResult
 from textual.containers import VerticalScroll
 
-from advisor.session.view import View
-from advisor.tui.panes.lines import HangingLines, Labelled, Lines
-from advisor.tui.panes.pane import Pane, TextPane
-from advisor.tui.panes.status_line import CONDITIONS
-from advisor.words.digits import clock
+from advisor.session.conducting import View
+from advisor.tui.panes.pane import HangingLines, Labelled, Lines, Pane, TextPane
+from advisor.tui.screens.face import CONDITIONS
+from advisor.words.quantities import clock
 
 
 def alpha_in_words(view: View) -> str:

@@ -11,11 +11,9 @@ from advisor.aircraft.reference import PARAMETERS as NAMES
 from advisor.oem.correlation import HIGH_CORRELATION, correlation_matrix
 from advisor.oem.estimate import Estimate
 from advisor.process.arrays import FloatArray
-from advisor.session.view import View
-from advisor.tui.panes.lines import Redrawn
-from advisor.tui.panes.pane import Pane, TableRows
-from advisor.words.digits import signed
-from advisor.words.quantities import PARAMETERS
+from advisor.session.conducting import View
+from advisor.tui.panes.pane import Pane, Redrawn, TableRows
+from advisor.words.quantities import PARAMETERS, signed
 
 _LABEL = 5
 _WIDE_CELL, _NARROW_CELL = 6, 5

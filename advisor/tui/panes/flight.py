@@ -10,15 +10,14 @@ from textual.app import ComposeResult
 from textual.events import Resize
 from textual.message import Message
 
-from advisor.flight.signals.power_on import Course
+from advisor.flight.signals.track import Course
 from advisor.flight.vehicle.modes import stays
 from advisor.process.arrays import FloatArray
-from advisor.session.view import View
+from advisor.session.conducting import View
 from advisor.tui.panes.last_verdict import symbol_and_word
-from advisor.tui.panes.lines import Lines
-from advisor.tui.panes.pane import Pane
+from advisor.tui.panes.pane import Lines, Pane
 from advisor.tui.plot.chart import Chart, Ink, Series
-from advisor.tui.plot.widget import Plot
+from advisor.tui.plot.painting import Plot
 from advisor.words.quantities import CHANNELS, channel
 
 SHOWN_WHOLE = ("elevator", "alpha", "q", "airspeed", "height")

@@ -15,12 +15,11 @@ from textual.events import Resize
 from advisor.process.parts import Parts
 from advisor.report.facts.reasons import weighed
 from advisor.report.facts.sizes import WORSE
+from advisor.session.conducting import View
 from advisor.session.diagnosis import Document, GapTask, diagnose_elsewhere
-from advisor.session.view import View
-from advisor.tui.panes.lines import HangingLines, Labelled
-from advisor.tui.panes.pane import Pane
+from advisor.tui.panes.pane import HangingLines, Labelled, Pane
 from advisor.tui.plot.chart import Chart, Series
-from advisor.tui.plot.widget import Plot
+from advisor.tui.plot.painting import Plot
 from advisor.words.quantities import channel
 
 _SHOWN = ("alpha", "q", "a_z", "theta")

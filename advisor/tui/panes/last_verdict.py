@@ -8,13 +8,11 @@ from textual.containers import Vertical
 from advisor.campaign.state import JudgedManeuver
 from advisor.decision.verdict import NO_TEST, ManeuverVerdict
 from advisor.oem.estimate import Estimate
-from advisor.session.view import View
+from advisor.session.conducting import View
 from advisor.tui.advice import without_word
 from advisor.tui.block_letters import HEIGHT, block_letters
-from advisor.tui.panes.lines import Labelled, Lines, Part
-from advisor.tui.panes.pane import TextPane
-from advisor.words.digits import distinct_texts, signed, stretch
-from advisor.words.quantities import channel
+from advisor.tui.panes.pane import Labelled, Lines, Part, TextPane
+from advisor.words.quantities import channel, distinct_texts, signed, stretch
 
 
 def symbol_and_word(judged: JudgedManeuver) -> tuple[str, str]:

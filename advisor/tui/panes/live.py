@@ -7,12 +7,11 @@ from textual.events import Resize
 
 from advisor.decision.arriving import WITHIN_PERCENT, Arriving
 from advisor.flight.maneuvers.maneuver import Maneuver
-from advisor.session.view import View
-from advisor.tui.panes.lines import Lines
-from advisor.tui.panes.pane import Pane
+from advisor.session.conducting import View
+from advisor.tui.panes.pane import Lines, Pane
 from advisor.tui.panes.pilot import bar, flying_in_words
 from advisor.tui.plot.chart import Chart, Ink, Series
-from advisor.tui.plot.widget import Plot
+from advisor.tui.plot.painting import Plot
 from advisor.words.quantities import channel, symbol
 
 TRACES: dict[str, Ink] = {"alpha": "measured", "q": "measured", "elevator": "input"}

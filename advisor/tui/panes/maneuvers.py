@@ -9,10 +9,10 @@ from textual.message import Message
 from textual.widgets import DataTable
 
 from advisor.campaign.state import JudgedManeuver
-from advisor.session.view import View
+from advisor.session.conducting import View
 from advisor.tui.panes.last_verdict import symbol_and_word
 from advisor.tui.panes.pane import Pane
-from advisor.words.digits import clock
+from advisor.words.quantities import clock
 
 Columns = tuple[tuple[str, int], ...]
 """Name and width of each column of the table. The widths do not depend on the rows, so that new content moves

@@ -9,14 +9,13 @@ from textual.events import Resize
 from textual.widgets import DataTable
 
 from advisor.aircraft.reference import PARAMETERS, SIDE_PARAMETERS
-from advisor.report.axes.lateral_document import side_quality_lines
 from advisor.report.facts.estimates import EstimatedParameter, of_all, of_one
-from advisor.report.qualities import coefficients_of, qualities_of, quality_lines
-from advisor.session.view import View
+from advisor.report.qualities import coefficients_of, qualities_of, quality_lines, side_quality_lines
+from advisor.session.conducting import View
 from advisor.tui.panes.courses import history_chart
 from advisor.tui.panes.pane import Pane, TextPane
-from advisor.tui.plot.widget import Plot
-from advisor.words.digits import maneuvers_said
+from advisor.tui.plot.painting import Plot
+from advisor.words.quantities import maneuvers_said
 
 _COLUMNS = (
     ("parameter", 11),

@@ -5,11 +5,11 @@ from collections.abc import Iterator
 from advisor.campaign.state import CampaignState
 from advisor.decision.verdict import FlightTestVerdict
 from advisor.decision.verdict import NextInput as Advised
-from advisor.session.view import View
+from advisor.session.conducting import View
 from advisor.tui.advice import advise, without_word
 from advisor.tui.block_letters import block_letters
 from advisor.tui.panes.last_verdict import symbol_and_word
-from advisor.tui.panes.lines import HangingLines, Labelled, Lines, Part, Redrawn
+from advisor.tui.panes.pane import HangingLines, Labelled, Lines, Part, Redrawn
 from advisor.tui.stick_drawing import drawn
 
 TONES = ("good", "warn", "bad", "quiet")

@@ -7,13 +7,12 @@ from textual.app import ComposeResult
 
 from advisor.oem.estimate import ChannelFit, Estimate
 from advisor.process.arrays import FloatArray
-from advisor.session.view import View
-from advisor.tui.panes.fit_charts import OUTPUTS, fits_of
+from advisor.session.conducting import View
+from advisor.tui.panes.fit import OUTPUTS, fits_of
 from advisor.tui.panes.pane import Pane, TableRows
 from advisor.tui.plot.chart import Chart, Level, Series
-from advisor.tui.plot.widget import Plot
-from advisor.words.quantiles import NORMAL_95
-from advisor.words.quantities import channel
+from advisor.tui.plot.painting import Plot
+from advisor.words.quantities import NORMAL_95, channel
 
 _LAGS_SHARE = 4
 """Length of the record divided by the longest lag of the autocorrelation: 4 (Box and Jenkins). At a longer

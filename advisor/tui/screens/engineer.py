@@ -13,25 +13,22 @@ from textual.events import Resize
 from textual.geometry import Size
 from textual.widgets import Static
 
-from advisor.campaign.hand_decisions import HandDecision, Verb
-from advisor.session.view import View
+from advisor.campaign.state import HandDecision, Verb
+from advisor.session.conducting import View
 from advisor.tui import keys
 from advisor.tui.panes.channels import Channels, EventLogPane
 from advisor.tui.panes.correlation import Correlation
-from advisor.tui.panes.courses import Courses
-from advisor.tui.panes.criterion import Criterion
+from advisor.tui.panes.courses import Courses, Criterion
 from advisor.tui.panes.fit import Fit
 from advisor.tui.panes.flight import WholeFlightPane
 from advisor.tui.panes.gap import GapPane
 from advisor.tui.panes.last_verdict import VerdictPane
-from advisor.tui.panes.lines import Redrawn
 from advisor.tui.panes.live import Live
 from advisor.tui.panes.maneuvers import Maneuvers
-from advisor.tui.panes.pane import Pane
+from advisor.tui.panes.pane import Pane, Redrawn
 from advisor.tui.panes.parameters import ParametersPane, Qualities
 from advisor.tui.panes.residuals import Residuals
-from advisor.tui.panes.status_line import Alarm, KeysLine, ReplayBar, StatusLine
-from advisor.tui.screens.face import Ask, Face
+from advisor.tui.screens.face import Alarm, Ask, Face, KeysLine, ReplayBar, StatusLine
 from advisor.tui.taking import files_of, pane_name, save
 from advisor.words.axes import AxisName
 

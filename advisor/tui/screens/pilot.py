@@ -5,13 +5,12 @@ from math import degrees, isfinite
 from textual.app import ComposeResult
 from textual.events import Resize
 
-from advisor.session.view import View
+from advisor.session.conducting import View
 from advisor.tui.advice import advise
 from advisor.tui.panes.last_verdict import LastVerdict
-from advisor.tui.panes.lines import Lines, Part
+from advisor.tui.panes.pane import Lines, Part
 from advisor.tui.panes.pilot import BigWord, CrewNotes, Gauge, NextInput, Why
-from advisor.tui.panes.status_line import Alarm, KeysLine, ReplayBar, StatusLine
-from advisor.tui.screens.face import Ask, Face
+from advisor.tui.screens.face import Alarm, Ask, Face, KeysLine, ReplayBar, StatusLine
 
 _APART = "    "
 

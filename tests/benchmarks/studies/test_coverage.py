@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from advisor.flight.signals.instrument_finding import InstrumentFinding
+from advisor.flight.signals.trust import InstrumentFinding
 from benchmarks.studies import covered, reports
 from benchmarks.studies.covered import NAMED, Drawn, Errors, Outcome, Stop, draws
 

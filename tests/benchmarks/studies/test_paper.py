@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 
 from advisor.aircraft.aircraft import CampaignPlan
-from advisor.bundled.study.campaigns import CampaignBlock, fly_campaigns, judge, outcome, table_blocks
-from advisor.bundled.study.flying import Scene
+from advisor.bundled.study.campaigns import CampaignBlock, Scene, fly_campaigns, judge, outcome, table_blocks
 from advisor.oem.estimate import Estimate
 from benchmarks.studies.paper import compare, measure, near_zero_blocks, needed_by_reading
 

@@ -10,15 +10,17 @@ from advisor.aircraft.aircraft import CampaignPlan
 from advisor.aircraft.reference import PARAMETERS
 from advisor.bundled.study import run
 from advisor.bundled.study.campaigns import (
+    ORDER,
     RULES,
     CampaignBlock,
+    Scene,
     estimate_copies,
     fly_campaigns,
+    fly_named,
+    noise_scale,
     outcome,
 )
 from advisor.bundled.study.figure import curve, in_terminal
-from advisor.bundled.study.flying import Scene, fly_named, noise_scale
-from advisor.bundled.study.paper import ORDER
 from advisor.bundled.study.table import as_document, row
 from advisor.decision.history import CandidateManeuver
 from advisor.decision.pooling import pool, posteriors_at_one_speed
@@ -27,7 +29,7 @@ from advisor.oem.estimate import Estimate
 from advisor.oem.problem import OutputErrorProblem, Record
 from advisor.oem.rows import Signal
 from advisor.oem.solution import Solution, solve
-from advisor.process.tasks.runner import results_in_order, run_here
+from advisor.process.tasks.processes import results_in_order, run_here
 
 SCENE = Scene()
 PLAN = CampaignPlan()

@@ -12,7 +12,7 @@ from advisor.bundled.study.figure import Curve, draw
 from advisor.cli import demo
 from advisor.cli.study import command
 from advisor.process.tasks import processes
-from advisor.process.tasks.runner import run_here
+from advisor.process.tasks.processes import run_here
 from advisor.words.problems import ConfigurationError
 from tests.full_disk import files_of_at_most
 from tests.schemas import breaches

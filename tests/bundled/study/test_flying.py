@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
-from advisor.bundled.study.flying import NOISE_READINGS, Scene, fly_named, noise_scale
-from advisor.bundled.study.paper import ORDER, TABLE_1
+from advisor.bundled.study.campaigns import NOISE_READINGS, ORDER, TABLE_1, Scene, fly_named, noise_scale
 
 SCENE = Scene()
 

@@ -3,17 +3,16 @@
 import numpy as np
 import pytest
 
-from advisor.aircraft.aircraft import Aircraft
-from advisor.aircraft.controls import SideControl
+from advisor.aircraft.aircraft import Aircraft, SideControl
 from advisor.aircraft.standard_gravity import GRAVITY_M_S2
 from advisor.campaign.campaign import Campaign
-from advisor.campaign.hand_decisions import HandDecision
+from advisor.campaign.state import HandDecision
 from advisor.flight.maneuvers.markers import SWEPT
 from advisor.flight.maneuvers.marks import Mark
 from advisor.flight.vehicle.parameters import filter_delay_s
-from advisor.report.axes.lateral_document import lateral_document
+from advisor.report.document import lateral_document
 from advisor.report.facts.answers import lateral_decision
-from advisor.report.table import joint_table, maneuver_line
+from advisor.report.text import joint_table, maneuver_line
 from tests.flight.columns import Wire, heartbeat, plane_parameters
 from tests.heard import hear
 from tests.oem.axis.builders import JET, flown, steps

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.campaign.axes import lateral_campaign
-from advisor.campaign.axes.lateral_campaign import LateralCampaign
-from advisor.campaign.hand_decisions import NOTHING, ByHand, Remark
+from advisor.campaign import axis_campaign
+from advisor.campaign.axis_campaign import LateralCampaign
+from advisor.campaign.state import NOTHING, ByHand, Remark
 from advisor.process.parts import Parts
 from tests.campaign.side_builders import estimate, judged
 
@@ -24,8 +24,8 @@ def joint(monkeypatch: pytest.MonkeyPatch) -> list[int]:
         made.append(len(maneuvers))
         return estimate("aileron", "rudder", percent=30.0)
 
-    monkeypatch.setattr(lateral_campaign, "estimate_axis", estimated)
-    monkeypatch.setattr(lateral_campaign, "judge", lambda *_: ())
+    monkeypatch.setattr(axis_campaign, "estimate_axis", estimated)
+    monkeypatch.setattr(axis_campaign, "judge", lambda *_: ())
     return made
 
 
@@ -96,10 +96,8 @@ def test_an_exclusion_in_the_file_of_decisions_counts_for_roll_and_yaw(joint: li
 
 
 def test_a_stop_ends_where_a_manoeuvre_on_which_it_rests_is_excluded(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(
-        lateral_campaign, "estimate_axis", lambda *_: estimate("aileron", "rudder", percent=2.0)
-    )
-    monkeypatch.setattr(lateral_campaign, "judge", lambda *_: ())
+    monkeypatch.setattr(axis_campaign, "estimate_axis", lambda *_: estimate("aileron", "rudder", percent=2.0))
+    monkeypatch.setattr(axis_campaign, "judge", lambda *_: ())
     campaign = flown("rudder", "aileron")
     assert campaign.flight_test.decision == "stop"
     campaign.exclude(1, "gust")
@@ -112,8 +110,8 @@ def test_a_manoeuvre_that_contradicts_all_the_others_is_left_out_and_said(monkey
     theta = [sound.theta + std * rng.standard_normal(len(std)) for _ in range(6)]
     theta[3] = theta[3] * 1.4
     estimates = iter([replace(sound, theta=one) for one in theta])
-    monkeypatch.setattr(lateral_campaign, "estimate_axis", lambda *_: next(estimates, sound))
-    monkeypatch.setattr(lateral_campaign, "judge", lambda *_: ())
+    monkeypatch.setattr(axis_campaign, "estimate_axis", lambda *_: next(estimates, sound))
+    monkeypatch.setattr(axis_campaign, "judge", lambda *_: ())
     monkeypatch.setattr(LateralCampaign, "_may_stop", False)
     campaign = flown(*["rudder", "aileron"] * 3)
     assert [one.maneuver.number for one in campaign.judged if not one.verdict.accepted] == [4]

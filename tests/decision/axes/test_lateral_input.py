@@ -6,9 +6,8 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from advisor.aircraft.aircraft import Aircraft
-from advisor.aircraft.controls import SideControl
-from advisor.decision.axes.side_input import FlownInput, next_lateral
+from advisor.aircraft.aircraft import Aircraft, SideControl
+from advisor.decision.axes.lateral_stop import FlownInput, next_lateral
 from advisor.decision.verdict import Reason
 from advisor.flight.signals.record import Channel
 from tests.campaign.side_builders import estimate, judged

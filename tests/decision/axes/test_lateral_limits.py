@@ -7,10 +7,9 @@ import pytest
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.decision.axes.lateral_requirements import lateral_levels, lateral_qualification
-from advisor.decision.axes.lateral_stop import lateral_flight_test
+from advisor.decision.axes.lateral_stop import FlownInput, lateral_flight_test
 from advisor.decision.axes.requirements import judge
-from advisor.decision.axes.side_input import FlownInput
-from advisor.decision.heard import Heard
+from advisor.decision.history import Heard
 from advisor.flight.maneuvers.maneuver import Maneuver, Span
 from advisor.flight.signals.record import Channel
 from advisor.model.axes.lateral import Trim

@@ -3,9 +3,8 @@
 import numpy as np
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.decision.axes.lateral_stop import lateral_flight_test
-from advisor.decision.axes.side_input import FlownInput
-from advisor.decision.heard import Heard
+from advisor.decision.axes.lateral_stop import FlownInput, lateral_flight_test
+from advisor.decision.history import Heard
 from tests.campaign.side_builders import estimate
 
 AIRCRAFT = Aircraft()

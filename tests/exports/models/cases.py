@@ -2,13 +2,12 @@
 
 from dataclasses import replace
 
-from advisor.aircraft.aircraft import Aircraft
-from advisor.aircraft.controls import Elevator
+from advisor.aircraft.aircraft import Aircraft, Elevator
 from advisor.aircraft.reference import Reference
 from advisor.exports.models.flown import FlownModel, SideModel
 from advisor.exports.models.improvement import STILL_AIR, ExportedServo, Improvement
 from advisor.flight.instruments.atmosphere import AirData
-from advisor.flight.signals.true_airspeed import standard_density, standard_pressure
+from advisor.flight.signals.track import standard_density, standard_pressure
 from advisor.gap.result import Value
 
 MODEL = {

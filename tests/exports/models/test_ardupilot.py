@@ -8,8 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from advisor.aircraft.aircraft import Aircraft
-from advisor.aircraft.controls import Elevator
+from advisor.aircraft.aircraft import Aircraft, Elevator
 from advisor.exports.models.formats.ardupilot_format import FORMAT, parameters_text, plane_text
 from advisor.exports.models.improvement import ExportedServo
 from advisor.words.problems import ConfigurationError

@@ -7,8 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from advisor.aircraft.aircraft import Aircraft
-from advisor.aircraft.controls import SideControl
+from advisor.aircraft.aircraft import Aircraft, SideControl
 from advisor.aircraft.reference import SIDE_PARAMETERS, Reference
 from advisor.exports.models.flown import FlownModel, side_of
 from advisor.exports.models.formats.ardupilot_format import plane_text

@@ -2,7 +2,7 @@
 
 import pytest
 
-from advisor.aircraft.controls import Elevator
+from advisor.aircraft.aircraft import Elevator
 from advisor.exports.models.improvement import ExportedServo, air_note, servo_of
 from advisor.flight.instruments.atmosphere import AirData
 from advisor.gap.result import Value

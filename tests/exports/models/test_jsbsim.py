@@ -9,8 +9,7 @@ import pytest
 
 from advisor.exports.models.formats.jsbsim_format import aircraft_text
 from advisor.exports.models.improvement import SLOPES, ExportedServo
-from advisor.exports.models.jsbsim.run import model_of
-from advisor.exports.models.jsbsim.source import parse, surface_of
+from advisor.exports.models.jsbsim.source import model_of, parse, surface_of
 from advisor.gap.result import Value
 from advisor.words.problems import ConfigurationError
 from tests.exports.models.cases import air_at, improvement

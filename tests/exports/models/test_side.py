@@ -15,8 +15,8 @@ from advisor.exports.models.formats.jsbsim_format import FORMAT as JSBSIM
 from advisor.exports.models.formats.matlab_format import both_axes_text, matrices
 from advisor.exports.models.improvement import STILL_AIR, ExportedServo
 from advisor.exports.models.jsbsim.axes.side_text import side_text
-from advisor.exports.models.jsbsim.run import measure, measure_side, model_of
 from advisor.exports.models.jsbsim.slopes import Request
+from advisor.exports.models.jsbsim.source import measure, measure_side, model_of
 from advisor.gap.result import Value
 from advisor.model.axes.lateral import Trim, state_matrix
 from advisor.words.problems import ConfigurationError

@@ -6,9 +6,9 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from advisor.aircraft.controls import SideControl
+from advisor.aircraft.aircraft import SideControl
 from advisor.aircraft.reference import SIDE_PARAMETERS
-from advisor.analysis.axes.side_comparison import SideCompared
+from advisor.analysis.axis_flown import SideCompared
 from advisor.exports.models.axes import prove_side as side_proof
 from advisor.exports.models.axes.prove_side import _ahead, prove_side
 from advisor.exports.models.proof import NUMBERS, Proof, stays_of

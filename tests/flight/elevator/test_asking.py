@@ -4,8 +4,7 @@ from dataclasses import replace
 
 import pytest
 
-from advisor.aircraft.aircraft import Aircraft
-from advisor.aircraft.controls import Elevator
+from advisor.aircraft.aircraft import Aircraft, Elevator
 from advisor.flight.stream.stream import FlightStream
 from tests.flight.stream.test_suitability import flight
 

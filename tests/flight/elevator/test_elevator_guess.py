@@ -6,7 +6,7 @@ import pytest
 from advisor.aircraft.aircraft import Aircraft
 from advisor.aircraft_file.log_facts import facts_of
 from advisor.aircraft_file.proposal import proposed
-from advisor.flight.maneuvers.events import ManeuverFlown, Notice
+from advisor.flight.maneuvers.maneuver import ManeuverFlown, Notice
 from advisor.flight.stream.stream import FlightStream
 from advisor.flight.vehicle.following import TAKE
 from tests.flight.columns import Wire, aoa, attitude, heartbeat, hud, parameter, pull, servo, text

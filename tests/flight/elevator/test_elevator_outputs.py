@@ -2,7 +2,7 @@
 
 import pytest
 
-from advisor.aircraft.controls import Elevator, ElevatorOutput
+from advisor.aircraft.aircraft import Elevator, ElevatorOutput
 from advisor.flight.elevator.elevator_outputs import find_elevator
 from advisor.flight.vehicle.ardupilot_wiring import ardupilot_wiring
 from advisor.flight.vehicle.surfaces import Surface

@@ -6,10 +6,9 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from advisor.aircraft.aircraft import Aircraft
-from advisor.aircraft.controls import Elevator
+from advisor.aircraft.aircraft import Aircraft, Elevator
 from advisor.analysis.gap_flights import maneuvers_of
-from advisor.flight.elevator.elevator_sign import SAID, ElevatorSign, answers_backwards, turned
+from advisor.flight.elevator.elevator_guess import SAID, ElevatorSign, answers_backwards, turned
 from advisor.flight.stream.stream import FlightStream
 from advisor.flight.vehicle.pieces import rows_between
 from advisor.mavlink.logs.logs import open_log

@@ -9,11 +9,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from advisor.aircraft.aircraft import Aircraft
-from advisor.aircraft.controls import Elevator, ElevatorOutput
+from advisor.aircraft.aircraft import Aircraft, Elevator, ElevatorOutput
 from advisor.flight.elevator.mixing import pitch_signs
-from advisor.flight.maneuvers.events import ManeuverFlown
-from advisor.flight.maneuvers.maneuver import Maneuver
+from advisor.flight.maneuvers.maneuver import Maneuver, ManeuverFlown
 from advisor.flight.signals.messages import Columns
 from advisor.flight.signals.record import Channel
 from advisor.flight.stream.stream import FlightStream

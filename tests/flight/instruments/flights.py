@@ -10,8 +10,8 @@ from advisor.aircraft.standard_gravity import GRAVITY_M_S2
 from advisor.flight.instruments.axes.side_instruments import examine_side
 from advisor.flight.instruments.examination import examine
 from advisor.flight.instruments.measured import pooled
-from advisor.flight.signals.instrument_finding import InstrumentFinding
 from advisor.flight.signals.record import Channel
+from advisor.flight.signals.trust import InstrumentFinding
 from advisor.oem.rows import Signal
 from tests.oem.axis.builders import JET, flown, rudder_doublet, steps
 

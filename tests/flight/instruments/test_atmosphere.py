@@ -9,7 +9,7 @@ from advisor.flight.instruments.atmosphere import AirData, air_flown
 from advisor.flight.maneuvers.maneuver import Maneuver, Span
 from advisor.flight.signals.channels import GIVEN_AIRSPEED
 from advisor.flight.signals.record import Channel
-from advisor.flight.signals.true_airspeed import standard_density, standard_pressure
+from advisor.flight.signals.track import standard_density, standard_pressure
 from tests.rows import row
 
 SPAN = Span(0.0, 1.0, 2.0, 3.0, "3-2-1-1", (), "quiet")

@@ -13,8 +13,8 @@ from advisor.flight.instruments.examination import examine
 from advisor.flight.instruments.examined import ExaminedRecords
 from advisor.flight.instruments.measured import Evidence, Measured
 from advisor.flight.signals.derived_alpha import DERIVED_ALPHA
-from advisor.flight.signals.instrument_finding import InstrumentFinding
 from advisor.flight.signals.record import Channel
+from advisor.flight.signals.trust import InstrumentFinding
 from tests.flight.instruments.flights import (
     SPEED,
     Channels,

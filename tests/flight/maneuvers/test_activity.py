@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import pytest
 
-from advisor.flight.maneuvers.events import Activity
+from advisor.flight.maneuvers.maneuver import Activity
 from tests.flights import SHIPPED, TWO, recorded
 
 pytestmark = pytest.mark.usefixtures("recorded_analyses")

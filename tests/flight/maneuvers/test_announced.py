@@ -3,11 +3,9 @@
 import numpy as np
 import pytest
 
-from advisor.aircraft.aircraft import Aircraft
-from advisor.aircraft.controls import Elevator
-from advisor.flight.elevator.elevator_sign import turned
-from advisor.flight.maneuvers.events import Activity, Notice, SideManeuverFlown
-from advisor.flight.maneuvers.maneuver import Maneuver, Span
+from advisor.aircraft.aircraft import Aircraft, Elevator
+from advisor.flight.elevator.elevator_guess import turned
+from advisor.flight.maneuvers.maneuver import Activity, Maneuver, Notice, SideManeuverFlown, Span
 from advisor.flight.maneuvers.markers import marked_span
 from advisor.flight.maneuvers.marks import Mark
 from advisor.flight.signals.record import Channel

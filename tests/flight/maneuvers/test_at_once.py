@@ -5,9 +5,8 @@ import pytest
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.flight.maneuvers.axes.side_inputs import SideMovement, with_elevator
-from advisor.flight.maneuvers.events import ManeuverFlown, SideManeuverFlown
-from advisor.flight.maneuvers.hand_flying import PITCH, ROLL, YAW, Loop
-from advisor.flight.maneuvers.maneuver import Span
+from advisor.flight.maneuvers.excitation import PITCH, ROLL, YAW, Loop
+from advisor.flight.maneuvers.maneuver import ManeuverFlown, SideManeuverFlown, Span
 from advisor.flight.stream.stream import FlightStream
 from tests.flight.columns import Wire, heartbeat, hud, plane_parameters, servo
 from tests.flight.stream.test_stream import as_plain

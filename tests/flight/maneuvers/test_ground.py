@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.flight.maneuvers.events import Activity
+from advisor.flight.maneuvers.maneuver import Activity
 from advisor.flight.stream.stream import FlightStream
 from tests.flight.columns import Wire, aoa, attitude, plane_parameters, pull, servo
 from tests.heard import hear

@@ -7,7 +7,7 @@ from tempfile import mkdtemp
 import numpy as np
 import pytest
 
-from advisor.flight.maneuvers.events import Activity, ManeuverFlown
+from advisor.flight.maneuvers.maneuver import Activity, ManeuverFlown
 from sim.flight import Flight
 from sim.record import record
 from sim.scenario import Air, Maneuver, Noise, Scenario

@@ -7,7 +7,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from advisor.aircraft.aircraft import Aircraft, Markers
-from advisor.flight.maneuvers.events import Activity, Notice
+from advisor.flight.maneuvers.maneuver import Activity, Notice
 from advisor.flight.maneuvers.marks import Mark
 from advisor.flight.stream.stream import FlightStream
 from tests.flight.columns import Wire, attitude, fly, heartbeat, hud, plane_parameters, servo, switch, text

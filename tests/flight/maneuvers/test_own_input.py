@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from advisor.flight.maneuvers.maneuver import Maneuver, Span
-from advisor.flight.maneuvers.own_input import odds_of_own_input
 from advisor.flight.maneuvers.purpose import judged
+from advisor.flight.maneuvers.stepped_input import odds_of_own_input
 from advisor.flight.signals.record import Channel
 from tests.flight.elevator.elevators import coloured
 from tests.rows import row

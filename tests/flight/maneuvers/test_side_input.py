@@ -3,7 +3,7 @@ import pytest
 
 from advisor.aircraft.aircraft import Limits
 from advisor.flight.maneuvers.axes.side_inputs import SideMovement, first_input, input_span, named
-from advisor.flight.maneuvers.hand_flying import ROLL, YAW, flown_elsewhere
+from advisor.flight.maneuvers.excitation import ROLL, YAW, flown_elsewhere
 from advisor.flight.maneuvers.maneuver import Maneuver, Span
 from advisor.flight.signals.record import Channel
 from tests.flight.elevator.elevators import PATTERNS, slewed, steps

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from advisor.flight.maneuvers.maneuver import InputKind, Maneuver, Span
-from advisor.flight.maneuvers.sines import command_of
+from advisor.flight.maneuvers.stepped_input import command_of
 from advisor.flight.signals.record import Channel
 
 T = np.arange(0.0, 5.0, 0.02)

@@ -9,8 +9,8 @@ from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
 from advisor.doctor.survey import Survey
-from advisor.flight.maneuvers.events import ManeuverFlown
-from advisor.flight.signals.attitude import Attitudes
+from advisor.flight.maneuvers.maneuver import ManeuverFlown
+from advisor.flight.signals.clocks import Attitudes
 from advisor.flight.vehicle.vehicle import Vehicle
 from tests.flight.columns import Wire, attitude, fly
 from tests.flight.stream.test_stream import as_plain, flown

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from advisor.flight.signals.banks import Banks, merged
+from advisor.flight.signals.channels import Banks, merged
 from tests.flight.columns import Wire, servo
 
 

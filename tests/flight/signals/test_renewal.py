@@ -3,8 +3,7 @@
 import numpy as np
 import pytest
 
-from advisor.flight.signals.record import Channel
-from advisor.flight.signals.renewal import counted_once, renewed
+from advisor.flight.signals.record import Channel, counted_once, renewed
 
 T = 0.02 * np.arange(500)
 

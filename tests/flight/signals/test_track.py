@@ -8,8 +8,7 @@ import pytest
 from advisor.aircraft.aircraft import Aircraft
 from advisor.flight.signals.channels import Decoded
 from advisor.flight.signals.messages import Columns
-from advisor.flight.signals.power_on import Extremes, PowerOn
-from advisor.flight.signals.track import BestRate, ChannelStatus, Track
+from advisor.flight.signals.track import BestRate, ChannelStatus, Extremes, PowerOn, Track
 from advisor.flight.signals.tracks import Tracks
 from advisor.flight.stream.stream import FlightStream
 from advisor.mavlink.logs.logs import open_log

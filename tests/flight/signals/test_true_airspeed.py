@@ -7,14 +7,8 @@ import pytest
 
 from advisor.flight.signals.channels import GIVEN_AIRSPEED, TRUE_AIRSPEED, Decoded
 from advisor.flight.signals.record import Channel
+from advisor.flight.signals.track import BY_HEIGHT, BY_PRESSURE, is_true, standard_pressure, true_airspeed
 from advisor.flight.signals.tracks import Tracks
-from advisor.flight.signals.true_airspeed import (
-    BY_HEIGHT,
-    BY_PRESSURE,
-    is_true,
-    standard_pressure,
-    true_airspeed,
-)
 
 T = np.arange(0.0, 5.0, 0.1)
 LOGGED = Channel("airspeed", T, np.full(len(T), 20.0), "VFR_HUD.airspeed")

@@ -3,9 +3,8 @@
 import numpy as np
 import pytest
 
-from advisor.aircraft.aircraft import Aircraft
-from advisor.aircraft.controls import Elevator
-from advisor.flight.maneuvers.events import ManeuverFlown, SideManeuverFlown
+from advisor.aircraft.aircraft import Aircraft, Elevator
+from advisor.flight.maneuvers.maneuver import ManeuverFlown, SideManeuverFlown
 from advisor.flight.stream.stream import FlightStream
 from advisor.mavlink.logs.formats.telemetry import read_tlog
 from tests.flights import SHIPPED, calm_two

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.flight.maneuvers.events import DataAgain, ManeuverFlown, NoData
+from advisor.flight.maneuvers.maneuver import DataAgain, ManeuverFlown, NoData
 from advisor.flight.signals.messages import Columns
-from advisor.flight.stream.service import Service
 from advisor.flight.stream.stream import FlightStream
+from advisor.flight.stream.suitability import Service
 from advisor.words.problems import Problem
 from tests.flight.columns import Wire, aoa, attitude, fly, heartbeat, hud, plane_parameters, servo
 

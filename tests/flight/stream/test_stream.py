@@ -8,10 +8,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from advisor.aircraft.aircraft import Aircraft
-from advisor.aircraft.controls import Elevator
-from advisor.aircraft.sensors import Alpha
-from advisor.flight.maneuvers.events import (
+from advisor.aircraft.aircraft import Aircraft, Alpha, Elevator
+from advisor.flight.maneuvers.maneuver import (
     Activity,
     ManeuverFlown,
     ManeuverStarted,

@@ -4,8 +4,7 @@ import math
 
 import pytest
 
-from advisor.aircraft.aircraft import Aircraft
-from advisor.aircraft.controls import Elevator
+from advisor.aircraft.aircraft import Aircraft, Elevator
 from advisor.flight.stream.stream import FlightStream
 from tests.flight.columns import Wire, attitude, fly, heartbeat, hud, servo
 from tests.rows import row

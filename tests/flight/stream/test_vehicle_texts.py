@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from advisor.flight.instruments import examined as examining
-from advisor.flight.maneuvers.events import VehicleSaid
+from advisor.flight.maneuvers.maneuver import VehicleSaid
 from advisor.flight.signals.messages import Columns
 from advisor.flight.stream import state
 from advisor.flight.stream.identity import READER

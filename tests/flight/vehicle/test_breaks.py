@@ -8,11 +8,10 @@ import pytest
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.decision.axes.requirements import judge
-from advisor.flight.maneuvers.events import ManeuverFlown
-from advisor.flight.maneuvers.maneuver import Maneuver, Span
+from advisor.flight.maneuvers.maneuver import Maneuver, ManeuverFlown, Span
 from advisor.flight.signals.messages import Columns
 from advisor.flight.stream.stream import FlightStream
-from advisor.flight.vehicle.breaks import DOWN
+from advisor.flight.vehicle.pieces import DOWN
 from advisor.mavlink.link.outgoing import Conversation
 from advisor.oem.estimate import NoEstimate
 from tests.flights import TWO, recorded

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.flight.maneuvers.events import ManeuverFlown, NoData, Notice, VehicleFound
+from advisor.flight.maneuvers.maneuver import ManeuverFlown, NoData, Notice, VehicleFound
 from advisor.flight.stream.stream import FlightStream
 from advisor.flight.vehicle.following import FOLLOW, SenderWatch
 from tests.flight.columns import Wire, aoa, attitude, fly, heartbeat, hud, plane_parameters, servo, text

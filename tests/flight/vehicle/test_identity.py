@@ -3,7 +3,7 @@
 import pytest
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.flight.maneuvers.events import READER_NOTICE
+from advisor.flight.maneuvers.maneuver import READER_NOTICE
 from advisor.flight.stream.identity import Identity
 from advisor.flight.vehicle.surfaces import Surface
 from tests.flight.columns import Wire, heartbeat, parameter

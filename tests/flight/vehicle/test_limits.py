@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from advisor.aircraft.controls import Elevator
-from advisor.flight.elevator.commanded import commanded
+from advisor.aircraft.aircraft import Elevator
 from advisor.flight.elevator.elevator_outputs import find_elevator
-from advisor.flight.signals.banks import Pulses
+from advisor.flight.elevator.mixing import commanded
+from advisor.flight.signals.channels import Pulses
 from advisor.flight.signals.messages import Columns
 from advisor.flight.vehicle.ardupilot_wiring import ardupilot_wiring
 from advisor.flight.vehicle.px4_wiring import px4_wiring

@@ -4,7 +4,7 @@ import struct
 
 import pytest
 
-from advisor.flight.maneuvers.events import Activity, ManeuverFlown
+from advisor.flight.maneuvers.maneuver import Activity, ManeuverFlown
 from advisor.flight.vehicle.surfaces import Surface
 from tests.flight.columns import Wire, attitude, heartbeat, hud, pull, servo
 from tests.heard import hear

@@ -3,9 +3,8 @@
 import numpy as np
 import pytest
 
-from advisor.aircraft.controls import Elevator, ElevatorOutput, SideControl
-from advisor.flight.elevator.axes.side_controls import find_side_control
-from advisor.flight.elevator.elevator_outputs import find_elevator
+from advisor.aircraft.aircraft import Elevator, ElevatorOutput, SideControl
+from advisor.flight.elevator.elevator_outputs import find_elevator, find_side_control
 from advisor.flight.vehicle.ardupilot_wiring import ardupilot_wiring
 from advisor.flight.vehicle.surfaces import Surface, driven
 from advisor.words.problems import Problem

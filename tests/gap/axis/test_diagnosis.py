@@ -6,10 +6,8 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from advisor.aircraft.aircraft import Aircraft
-from advisor.aircraft.controls import SideControl
+from advisor.aircraft.aircraft import Aircraft, Beta, SideControl
 from advisor.aircraft.reference import SIDE_PARAMETERS
-from advisor.aircraft.sensors import Beta
 from advisor.gap.alternative import Alternative, AlternativeEvidence, together
 from advisor.gap.axis import diagnosis
 from advisor.gap.axis import flight as flight_of_axis

@@ -18,7 +18,7 @@ from advisor.gap.axis.starts import Starts
 from advisor.gap.verdict.missing_law import law_in
 from advisor.model.axes.lateral import LATERAL
 from advisor.oem.axis.disturbance import answered, courses_of
-from advisor.oem.driven_motion.noise import Noise
+from advisor.oem.driven_motion.setting import Noise
 from tests.gap.axis.test_comparison import AIRCRAFT, maneuvers
 from tests.oem.axis.builders import JET
 

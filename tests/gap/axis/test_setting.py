@@ -10,7 +10,7 @@ from advisor.gap.axis.effects import axis_effects, block_of, unseen
 from advisor.gap.axis.fit import Flying, Point, outputs
 from advisor.gap.axis.setting import THROTTLE as OF_THROTTLE
 from advisor.gap.axis.setting import Flown, deflection, laid_out
-from advisor.gap.candidates.catalogue import variants_for
+from advisor.gap.candidates.known import variants_for
 from advisor.gap.effects.thrust_moment import EFFECT as THRUST
 from advisor.gap.inference.sizes import with_sizes
 from advisor.gap.records.prepare import prepare

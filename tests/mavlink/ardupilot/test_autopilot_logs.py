@@ -11,9 +11,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from pymavlink import DFReader
 
-from advisor.aircraft.aircraft import Aircraft, Markers
-from advisor.aircraft.controls import Elevator
-from advisor.flight.maneuvers.events import ManeuverFlown
+from advisor.aircraft.aircraft import Aircraft, Elevator, Markers
+from advisor.flight.maneuvers.maneuver import ManeuverFlown
 from advisor.flight.signals.messages import Columns
 from advisor.flight.stream.stream import FlightStream
 from advisor.mavlink.logs.logs import open_log

@@ -10,9 +10,8 @@ from advisor.flight.signals.messages import Columns
 from advisor.mavlink.logs.formats import dataflash
 from advisor.mavlink.logs.logs import open_log
 from advisor.mavlink.records import record_scan
-from advisor.mavlink.records.dataflash import RecordTable
 from advisor.mavlink.records.record_scan import known_lengths, scan_records
-from advisor.mavlink.records.stretches import read_stretches
+from advisor.mavlink.records.stretches import RecordTable, read_stretches
 from tests.mavlink.ardupilot.test_autopilot_logs import dataflash_flight
 from tests.mavlink.dataflash_writer import rewritten
 

@@ -5,8 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from advisor.aircraft.aircraft import Aircraft
-from advisor.aircraft.sensors import Alpha
+from advisor.aircraft.aircraft import Aircraft, Alpha
 from advisor.mavlink.logs.logs import open_log
 from tests.heard import hear_log
 from tests.mavlink.ardupilot.test_autopilot_logs import dataflash_flight

@@ -5,7 +5,7 @@ import pytest
 
 from advisor.mavlink.ardupilot import sensors
 from advisor.mavlink.ardupilot.sensors import Said, stated_health
-from advisor.mavlink.records.dataflash import RecordTable
+from advisor.mavlink.records.stretches import RecordTable
 
 
 def flown(records: RecordTable) -> RecordTable:

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from advisor.flight.maneuvers.events import Notice, VehicleSaid
+from advisor.flight.maneuvers.maneuver import Notice, VehicleSaid
 from advisor.flight.maneuvers.markers import SWEPT
 from advisor.mavlink.ardupilot.log_health import health, lost_texts, sweeps
-from advisor.mavlink.records.dataflash import RecordTable
+from advisor.mavlink.records.stretches import RecordTable
 from tests.heard import hear_log
 from tests.mavlink.ardupilot.test_autopilot_logs import dataflash_flight
 

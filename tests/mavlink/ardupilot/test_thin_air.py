@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from advisor.flight.signals.record import Channel
-from advisor.mavlink.logs.whole import read_whole_log
+from advisor.mavlink.logs.logs import read_whole_log
 from tests.heard import hear
 
 LOG = Path(__file__).parents[2] / "cases" / "base.bin"

@@ -3,10 +3,9 @@
 import numpy as np
 import pytest
 
-from advisor.mavlink.ardupilot.ardupilot_messages import Known, Translation
+from advisor.mavlink.ardupilot.ardupilot_messages import KINDS, Known, Translation
 from advisor.mavlink.ardupilot.former_records import Clocked
-from advisor.mavlink.ardupilot.which_flew import KINDS
-from advisor.mavlink.records.dataflash import RecordTable
+from advisor.mavlink.records.stretches import RecordTable
 
 T_US = 40_000 * np.arange(100)
 SOUND = {

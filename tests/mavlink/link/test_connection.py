@@ -2,7 +2,7 @@ from pathlib import Path
 
 import pytest
 
-from advisor.mavlink.link.connection import parse_connection
+from advisor.mavlink.link.transports import parse_connection
 from advisor.words.problems import ConfigurationError
 
 

@@ -4,8 +4,7 @@ import pytest
 from pymavlink.dialects.v20 import ardupilotmega as dialect
 
 from advisor.mavlink.link.intake import Intake
-from advisor.mavlink.wire.framing import CRC_EXTRA
-from advisor.mavlink.wire.signing import SignatureCheck
+from advisor.mavlink.wire.framing import CRC_EXTRA, SignatureCheck
 from tests.mavlink.link.builders import Sender, attitude, heartbeat
 
 KEY = bytes(range(32))

@@ -12,8 +12,7 @@ from pymavlink.dialects.v20 import ardupilotmega as dialect
 
 from advisor.flight.signals.messages import Columns
 from advisor.mavlink.link import health, kept_link, link_process
-from advisor.mavlink.link.keeping import Keeping, new_door
-from advisor.mavlink.link.kept_link import KeptLink
+from advisor.mavlink.link.kept_link import Keeping, KeptLink, new_door
 from advisor.mavlink.link.link_process import LinkProcess
 from advisor.mavlink.wire.frames import FrameScanner
 from advisor.session.live import LinkSource

@@ -9,12 +9,12 @@ import pytest
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.campaign.campaign import Campaign
-from advisor.flight.maneuvers.events import VehicleFound
+from advisor.flight.maneuvers.maneuver import VehicleFound
 from advisor.flight.signals.messages import Columns
 from advisor.flight.stream.stream import FlightStream
 from advisor.mavlink.link.link import Link
 from advisor.mavlink.logs.logs import open_log
-from advisor.report.follow import follow
+from advisor.report.text import follow
 from tests.mavlink.link.builders import UdpVehicle, attitude, free_port, heartbeat, read_all, wait_until
 from tests.mavlink.link.test_peers import running
 

@@ -11,8 +11,7 @@ from pathlib import Path
 import pytest
 
 from advisor.mavlink.link import recorder as recorder_module
-from advisor.mavlink.link.recorder import Recorder
-from advisor.mavlink.link.recording_file import default_recording
+from advisor.mavlink.link.recorder import Recorder, default_recording
 from advisor.words.problems import UnusableInputError
 from tests.mavlink.link.builders import Sender, attitude, wait_until
 

@@ -3,7 +3,7 @@ from pathlib import Path
 
 import pytest
 
-from advisor.mavlink.wire.signing import SignatureCheck, read_key
+from advisor.mavlink.wire.framing import SignatureCheck, read_key
 from advisor.words.problems import ConfigurationError
 from tests.mavlink.link.builders import Sender, attitude
 

@@ -8,8 +8,8 @@ import pytest
 from MAVProxy.modules.lib.param_ftp import ftp_param_decode
 from pymavlink.dialects.v20 import ardupilotmega as dialect
 
+from advisor.mavlink.logs.logs import read_whole_log
 from advisor.mavlink.logs.parameter_file import unpacked
-from advisor.mavlink.logs.whole import read_whole_log
 from tests.mavlink.builders import Sender, record
 
 PARAMETERS = [

@@ -9,8 +9,8 @@ import pytest
 
 from advisor.aircraft.aircraft import Aircraft
 from advisor.analysis.gap_flights import maneuvers_of
-from advisor.analysis.log_series import LogSeries
-from advisor.flight.maneuvers.events import (
+from advisor.analysis.marks_file import LogSeries
+from advisor.flight.maneuvers.maneuver import (
     READER_NOTICE,
     FlightEvent,
     ManeuverAgain,
@@ -21,8 +21,7 @@ from advisor.flight.maneuvers.events import (
 from advisor.flight.signals.messages import Columns
 from advisor.flight.stream.flights import Flights
 from advisor.flight.vehicle.parameters import names_in
-from advisor.mavlink.logs.logs import open_log
-from advisor.mavlink.logs.whole import read_whole_log
+from advisor.mavlink.logs.logs import open_log, read_whole_log
 from advisor.words.problems import UnusableInputError
 from tests.mavlink.builders import Sender, dialect
 from tests.mavlink.paths import records

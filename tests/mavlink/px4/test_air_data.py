@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from advisor.mavlink.px4.px4_air import air
+from advisor.mavlink.px4.px4_outputs import air
 
 STAMPS = np.arange(0, 1_000_000, 100_000)
 

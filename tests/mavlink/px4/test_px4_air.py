@@ -5,8 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from advisor.aircraft.aircraft import Aircraft
-from advisor.aircraft.controls import Elevator
+from advisor.aircraft.aircraft import Aircraft, Elevator
 from advisor.flight.signals.derived_alpha import DERIVED_ALPHA
 from tests.mavlink.px4_logs import PX4Log, every, flight, flown, pitch, pulses, stick
 

@@ -5,8 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from advisor.aircraft.aircraft import Aircraft
-from advisor.aircraft.controls import Elevator
+from advisor.aircraft.aircraft import Aircraft, Elevator
 from advisor.flight.vehicle.px4_wiring import allocation
 from advisor.flight.vehicle.surfaces import Surface
 from advisor.mavlink.logs.logs import open_log

@@ -7,9 +7,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from advisor.aircraft.aircraft import Aircraft
-from advisor.aircraft.controls import Elevator
-from advisor.flight.maneuvers.events import ManeuverFlown
+from advisor.aircraft.aircraft import Aircraft, Elevator
+from advisor.flight.maneuvers.maneuver import ManeuverFlown
 from advisor.mavlink.logs.logs import open_log
 from advisor.mavlink.px4.ulog import WholeFile
 from advisor.words.problems import UnusableInputError

@@ -10,7 +10,7 @@ from advisor.oem.axis import search as axis_search
 from advisor.oem.axis.disturbance import Linear, courses_of
 from advisor.oem.axis.problem import AxisProblem
 from advisor.oem.axis.search import solve
-from advisor.oem.driven_motion import errors
+from advisor.oem.driven_motion import estimate
 from advisor.oem.rows import Signal
 from tests.oem.axis.builders import JET, aileron_doublet, flown, vector
 
@@ -75,9 +75,9 @@ def test_errors_of_one_test_contain_its_gusts(coloured):
 def test_a_scale_that_residuals_show_counts_less_than_one_that_the_aileron_absorbs(monkeypatch):
     rng = np.random.default_rng(2)
     problem = in_gusts(rng, solve(problem_of(rng)))
-    monkeypatch.setattr(errors, "SCALE", 0.1)
+    monkeypatch.setattr(estimate, "SCALE", 0.1)
     widths = std_of(solve(problem))
-    monkeypatch.setattr(errors, "SCALE", 1.0)
+    monkeypatch.setattr(estimate, "SCALE", 1.0)
     L_beta, L_p, L_delta_a, *_ = std_of(solve(problem)) / widths
     assert max(L_beta, L_p) < 2.0
     assert L_delta_a > 5.0

@@ -7,11 +7,7 @@ from advisor.model.axes.lateral import LATERAL
 from advisor.oem.axis import search as axis_search
 from advisor.oem.axis.motion import AxisMotion
 from advisor.oem.axis.problem import AxisProblem, lay_out
-from advisor.oem.axis.search import (
-    not_identifiable,
-    priors_of,
-    solve,
-)
+from advisor.oem.axis.search import not_identifiable, priors_of, solve
 from advisor.oem.descent import descended
 from advisor.oem.extra import Prior
 from advisor.oem.rows import Signal

@@ -12,7 +12,7 @@ from advisor.oem.axis.parameter import parameters_of
 from advisor.oem.axis.problem import TERM, AxisProblem
 from advisor.oem.axis.search import Searched, search, solve
 from advisor.oem.estimate import NoEstimate
-from advisor.oem.gained import log_likelihood
+from advisor.oem.identifiability import log_likelihood
 from advisor.oem.solution import Solution
 from tests.oem.axis.builders import JET, aileron_doublet, flown, rudder_doublet
 

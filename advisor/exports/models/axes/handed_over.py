@@ -6,8 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from advisor.aircraft.aircraft import Aircraft
-from advisor.analysis.axes.side_comparison import SideCompared, accepted_of
-from advisor.analysis.axis_flown import flies_roll_or_yaw
+from advisor.analysis.axis_flown import SideCompared, accepted_of, flies_roll_or_yaw
 from advisor.analysis.whole_flights import read_whole
 from advisor.exports.models.flown import FlownModel, SideModel, flown_model, side_flown, side_of
 from advisor.exports.models.improvement import ExportedServo, servo_of

@@ -25,8 +25,7 @@ from advisor.exports.models.proof import (
     without,
 )
 from advisor.flight.maneuvers.maneuver import Maneuver
-from advisor.gap.candidates.catalogue import variants_for
-from advisor.gap.candidates.known import changes_in, lasting, less_of_the_servo, together
+from advisor.gap.candidates.known import changes_in, lasting, less_of_the_servo, together, variants_for
 from advisor.gap.diagnose import Examined
 from advisor.gap.inference.prior import FIELD, FieldPrior
 from advisor.gap.records.prepare import as_stamped, prepare

@@ -9,10 +9,9 @@ from typing import Any, TypeVar
 
 import numpy as np
 
-from advisor.aircraft.aircraft import Aircraft
-from advisor.aircraft.controls import SideControl
+from advisor.aircraft.aircraft import Aircraft, SideControl
 from advisor.aircraft.reference import SIDE_PARAMETERS
-from advisor.analysis.axes.side_comparison import SideCompared, answered, beside_simulator, with_derivatives
+from advisor.analysis.axis_flown import SideCompared, answered, beside_simulator, with_derivatives
 from advisor.exports.models.axes.handed_over import behind_found
 from advisor.exports.models.flown import flown_model, side_of
 from advisor.exports.models.formats.jsbsim_format import FORMAT as JSBSIM
@@ -36,7 +35,7 @@ from advisor.oem.axis.estimator import estimate_axis, predicted
 from advisor.oem.estimate import NoEstimate
 from advisor.process.arrays import FloatArray
 from advisor.simulators.protocol import Progress
-from advisor.words.quantiles import NORMAL_95
+from advisor.words.quantities import NORMAL_95
 
 _Answer = TypeVar("_Answer")
 

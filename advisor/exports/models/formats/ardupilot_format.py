@@ -25,8 +25,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import NamedTuple
 
-from advisor.aircraft.aircraft import Aircraft
-from advisor.aircraft.controls import Pairs
+from advisor.aircraft.aircraft import Aircraft, Pairs
 from advisor.aircraft.reference import SIDE_PARAMETERS, Reference
 from advisor.exports.models.flown import FlownModel, SideModel
 from advisor.exports.models.formats import AxisAsked, ModelFormat, refuse_lacking

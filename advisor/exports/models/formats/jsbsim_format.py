@@ -28,14 +28,16 @@ from advisor.exports.models.improvement import (
     zero_said,
 )
 from advisor.exports.models.jsbsim.axes.side_text import side_text
-from advisor.exports.models.jsbsim.run import Model, measure, model_of
 from advisor.exports.models.jsbsim.slopes import Request, Slopes
 from advisor.exports.models.jsbsim.source import (
     AXES,
     PLAIN,
     SURFACES,
     AddedFunction,
+    Model,
     corrected,
+    measure,
+    model_of,
     parse,
     settled,
     surface_of,

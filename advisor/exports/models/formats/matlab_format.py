@@ -21,7 +21,7 @@ from advisor.exports.models.improvement import Exported, Improvement, air_note, 
 from advisor.gap.result import Value
 from advisor.model.axes.lateral import state_matrix
 from advisor.process.arrays import FloatArray
-from advisor.words.quantiles import NORMAL_95
+from advisor.words.quantities import NORMAL_95
 from advisor.words.quantities import SIDE_PARAMETERS as QUANTITIES
 
 

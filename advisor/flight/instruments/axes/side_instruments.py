@@ -21,24 +21,21 @@ from advisor.aircraft.standard_gravity import GRAVITY_M_S2
 from advisor.flight.instruments.delayed_fit import DRIFT, LONGEST_DELAY_S, DelayedFit, Summand, fit_delays
 from advisor.flight.instruments.evidence import MOVED_RAD, Channels, usable
 from advisor.flight.instruments.examined import (
+    FORCE_UNITS_M_S2,
     PLAIN,
     SIGMAS,
     Examined,
     Work,
     hold_clocks,
-    with_error,
-)
-from advisor.flight.instruments.measured import ANY, EXCLUDED, Evidence, Measured, weigh
-from advisor.flight.instruments.rate_and_force import (
-    FORCE_UNITS_M_S2,
     hold_force_unit,
     hold_rate,
     stated_force_unit,
     turned,
+    with_error,
 )
-from advisor.flight.signals.motion import channel_at, integrated
-from advisor.flight.signals.record import Channel
-from advisor.flight.signals.renewal import renewed
+from advisor.flight.instruments.measured import ANY, EXCLUDED, Evidence, Measured, weigh
+from advisor.flight.signals.derived_alpha import channel_at, integrated
+from advisor.flight.signals.record import Channel, renewed
 from advisor.process.arrays import FloatArray
 
 FARTHEST_S = 3.0

@@ -6,7 +6,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from advisor.flight.maneuvers.hand_flying import ROLL, YAW, Loop
+from advisor.flight.maneuvers.excitation import ROLL, YAW, Loop
 from advisor.flight.maneuvers.maneuver import InputKind, Span
 from advisor.flight.maneuvers.markers import RESTING_S
 from advisor.flight.signals.record import Channel

@@ -9,17 +9,15 @@ from pathlib import Path
 import numpy as np
 
 from advisor.flight.signals.messages import Columns, cut
-from advisor.mavlink.ardupilot.ardupilot_messages import Known, Translation
+from advisor.mavlink.ardupilot.ardupilot_messages import SELECTORS, Known, Translation
 from advisor.mavlink.ardupilot.ardupilot_vehicle import VEHICLE_RECORDS
 from advisor.mavlink.ardupilot.body_rates import RATE_RECORDS
 from advisor.mavlink.ardupilot.former_records import RENAMED, SENSORS_APART, Clocked, in_todays_names
 from advisor.mavlink.ardupilot.log_health import HEALTH_RECORDS, SYSTEM_ID_RECORDS
 from advisor.mavlink.ardupilot.sensors import HEALTH_FIELDS
-from advisor.mavlink.ardupilot.which_flew import SELECTORS
 from advisor.mavlink.logs.formats import LogFormat
-from advisor.mavlink.records import dataflash, record_scan
-from advisor.mavlink.records.dataflash import RecordTable
-from advisor.mavlink.records.stretches import Stretch, read_stretches
+from advisor.mavlink.records.record_scan import HEADER
+from advisor.mavlink.records.stretches import RecordTable, Stretch, first_definition, read_stretches
 from advisor.words.problems import Problem, UnusableInputError
 
 _RECORDS: dict[str, set[str]] = {
@@ -165,7 +163,7 @@ first."""
 
 
 def _begins_at(beginning: bytes) -> int | None:
-    at = 0 if beginning.startswith(record_scan.HEADER) else dataflash.first_definition(beginning)
+    at = 0 if beginning.startswith(HEADER) else first_definition(beginning)
     return at if at >= 0 else None
 
 

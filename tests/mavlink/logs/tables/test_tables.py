@@ -4,13 +4,11 @@ import numpy as np
 import pytest
 from scipy.io import savemat
 
-from advisor.aircraft.aircraft import Aircraft, TableColumns
-from advisor.aircraft.controls import Elevator
+from advisor.aircraft.aircraft import Aircraft, Elevator, TableColumns
 from advisor.analysis.gap import as_in_tables
+from advisor.mavlink.logs.formats.table import quantities_of, recognised_columns
 from advisor.mavlink.logs.kinds import recognised, refusal
 from advisor.mavlink.logs.logs import open_log
-from advisor.mavlink.logs.tables.names import recognised_columns
-from advisor.mavlink.logs.tables.quantities import quantities_of
 from advisor.words.problems import ConfigurationError, UnusableInputError
 from tests.flights import SHIPPED
 

@@ -15,10 +15,9 @@ import numpy as np
 from advisor.aircraft.reference import SIDE_PARAMETERS
 from advisor.exports.models.flown import SideModel
 from advisor.exports.models.improvement import Exported, ExportedServo, zero_said
-from advisor.exports.models.jsbsim.run import Model, measure_side
 from advisor.exports.models.jsbsim.slopes import SIDE_VARIABLES as VARIABLES
 from advisor.exports.models.jsbsim.slopes import Request, SideSlopes
-from advisor.exports.models.jsbsim.source import AddedFunction, corrected, parse, settled
+from advisor.exports.models.jsbsim.source import AddedFunction, Model, corrected, measure_side, parse, settled
 from advisor.words.problems import ConfigurationError
 
 RATES = ("p", "r")

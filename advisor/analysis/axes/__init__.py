@@ -1,1 +1,0 @@
-"""From logs to the gap of one axis."""

@@ -1,1 +1,0 @@
-"""``advisor gap`` for pitch, and for roll and yaw."""

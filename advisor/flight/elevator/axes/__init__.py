@@ -1,1 +1,0 @@
-"""The control surfaces of one axis in the outputs of an autopilot."""

@@ -1,1 +1,0 @@
-"""The manoeuvres of one axis, from a stream of messages."""

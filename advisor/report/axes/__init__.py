@@ -1,1 +1,0 @@
-"""Documents and texts of one axis."""

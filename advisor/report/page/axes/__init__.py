@@ -1,1 +1,0 @@
-"""Sections of a page about one axis."""
