@@ -1,7 +1,8 @@
-"""Vibration of a log: lines of its power spectra, and clipped samples."""
+"""Vibration of a log: power spectra, lines and clipped samples; and fields that a person asks for by name."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from difflib import get_close_matches
 from pathlib import Path
 
 import numpy as np
@@ -9,15 +10,89 @@ from scipy.signal import welch
 from scipy.stats import f as variance_ratio
 
 from advisor.aircraft.aircraft import TableColumns
-from advisor.mavlink.logs.raw_fields import RawTable, read_raw
+from advisor.aircraft.standard_gravity import GRAVITY_M_S2
+from advisor.mavlink.logs.raw_fields import RawTable, names_in, read_raw
 from advisor.process.arrays import FloatArray
+from advisor.words.problems import ConfigurationError
 
-_MAVLINK = {"accelerometer": ("xacc", "yacc", "zacc"), "gyro": ("xgyro", "ygyro", "zgyro")}
+
+@dataclass(frozen=True, slots=True)
+class FieldSum:
+    """One field of a log, or the sum of several, in the log's units."""
+
+    name: str
+    """Name as the user wrote it: ``RCOU.C1+RCOU.C3``."""
+    t: FloatArray
+    """Shape (n,), stamps of the first field, s since power-on."""
+    y: FloatArray
+    """Shape (n,), sum of the fields. All fields but the first are interpolated at ``t``. NaN where
+    a field has no samples."""
+
+
+def field_sums(log: Path, asked: Sequence[str]) -> tuple[FieldSum, ...]:
+    """Return the fields that are asked for.
+
+    Parameters
+    ----------
+    asked
+        Names, each ``MESSAGE.FIELD`` as in the log, or several fields joined by ``+``.
+
+    Raises
+    ------
+    ConfigurationError
+        A field is not in the log.
+    UnusableInputError
+        The log cannot be read.
+    """
+    if not asked:
+        return ()
+    parts = [[part.strip() for part in text.split("+")] for text in asked]
+    tables = read_raw(log, {part.partition(".")[0].partition("[")[0] for sums in parts for part in sums})
+    _refuse_unknown(log, [part for sums in parts for part in sums], tables)
+    return tuple(_summed(text, sums, tables) for text, sums in zip(asked, parts, strict=True))
+
+
+def _refuse_unknown(log: Path, parts: Sequence[str], tables: Mapping[str, RawTable]) -> None:
+    there = {f"{name}.{field}" for name, table in tables.items() for field in table.fields}
+    unknown = [part for part in parts if part not in there]
+    if not unknown:
+        return
+    defined = {f"{name}.{field}": None for name, fields in names_in(log).items() for field in fields}
+    every = {name.lower(): name for name in (*defined, *there)}
+    said = []
+    for part in dict.fromkeys(unknown):
+        near = [every[name] for name in get_close_matches(part.lower(), every) if every[name] != part]
+        nearest = f"; nearest: {', '.join(near)}" if near else "; names are MESSAGE.FIELD as in the log"
+        said.append(f"--field {part}: {log.name} has no numbers under this name{nearest}.")
+    raise ConfigurationError("\n".join(said))
+
+
+def _summed(text: str, parts: Sequence[str], tables: Mapping[str, RawTable]) -> FieldSum:
+    t = tables[parts[0].partition(".")[0]].t
+    y = np.zeros(len(t))
+    for part in parts:
+        name, _, field = part.partition(".")
+        y += np.interp(t, tables[name].t, tables[name].fields[field], left=np.nan, right=np.nan)
+    return FieldSum(text, t, y)
+
+
+_ACCELEROMETER, _GYRO = ("accelerometer", "m/s²"), ("gyro", "rad/s")
+_MILLI = (
+    (*_ACCELEROMETER, ("xacc", "yacc", "zacc"), 1e-3 * GRAVITY_M_S2),
+    (*_GYRO, ("xgyro", "ygyro", "zgyro"), 1e-3),
+)
 _SENSORS = {
-    "IMU": {"accelerometer": ("AccX", "AccY", "AccZ"), "gyro": ("GyrX", "GyrY", "GyrZ")},
-    **dict.fromkeys(("HIGHRES_IMU", "RAW_IMU", "SCALED_IMU", "SCALED_IMU2", "SCALED_IMU3"), _MAVLINK),
+    "IMU": (
+        (*_ACCELEROMETER, ("AccX", "AccY", "AccZ"), 1.0),
+        (*_GYRO, ("GyrX", "GyrY", "GyrZ"), 1.0),
+    ),
+    "HIGHRES_IMU": (
+        (*_ACCELEROMETER, ("xacc", "yacc", "zacc"), 1.0),
+        (*_GYRO, ("xgyro", "ygyro", "zgyro"), 1.0),
+    ),
+    **dict.fromkeys(("RAW_IMU", "SCALED_IMU", "SCALED_IMU2", "SCALED_IMU3"), _MILLI),
 }
-"""Fields of each sensor of each message. A line is relative to its neighbours, in any unit."""
+"""Sensor, unit, fields and factor of each message. ArduPilot sends RAW_IMU in mg and mrad/s as well."""
 _CLIPPING = {
     "VIBE": ("Clip", "Clip0", "Clip1", "Clip2"),
     "VIBRATION": ("clipping_0", "clipping_1", "clipping_2"),
@@ -48,12 +123,25 @@ class Spectrum:
 
     name: str
     """Message and sensor: ``IMU[1] accelerometer``."""
+    unit: str
+    rate_hz: float
     frequency_hz: FloatArray
     """Shape (n,), up to half of the rate."""
     density: FloatArray
-    """Shape (3, n), square of the log's unit per Hz."""
+    """Shape (3, n), unit² / Hz."""
     segments: int
     """Number of segments without overlap."""
+
+    @property
+    def highest_hz(self) -> float:
+        """Highest frequency that the log's rate shows, Hz."""
+        return 0.5 * self.rate_hz
+
+    @property
+    def rms(self) -> FloatArray:
+        """Root mean square of each axis without its mean, shape (3,), in the sensor's unit."""
+        power: FloatArray = np.sum(self.density[:, 1:], axis=1) * self.frequency_hz[1]
+        return np.sqrt(power)
 
     def line_hz(self, up_to_hz: float) -> float | None:
         """Return the frequency of the strongest line up to a frequency; None without a line.
@@ -127,15 +215,15 @@ def _message(name: str) -> str:
 
 
 def _spectra(name: str, table: RawTable) -> Iterator[Spectrum]:
-    for sensor, fields in _SENSORS.get(_message(name), {}).items():
+    for sensor, unit, fields, factor in _SENSORS.get(_message(name), ()):
         if all(field in table.fields for field in fields):
-            samples = np.array([table.fields[field] for field in fields])
-            made = spectrum(f"{name} {sensor}", table.t, samples)
+            samples = factor * np.array([table.fields[field] for field in fields])
+            made = spectrum(f"{name} {sensor}", unit, table.t, samples)
             if made is not None:
                 yield made
 
 
-def spectrum(name: str, t: FloatArray, samples: FloatArray) -> Spectrum | None:
+def spectrum(name: str, unit: str, t: FloatArray, samples: FloatArray) -> Spectrum | None:
     """Return the spectrum of the longest stretch without a gap; None for a stretch without a segment.
 
     Parameters
@@ -163,4 +251,4 @@ def spectrum(name: str, t: FloatArray, samples: FloatArray) -> Spectrum | None:
         at, density = welch(samples[:, longest], rate_hz, nperseg=size, average="median")
     if not np.all(np.isfinite(density)):
         return None
-    return Spectrum(name, at, density, len(longest) // size)
+    return Spectrum(name, unit, rate_hz, at, density, len(longest) // size)

@@ -15,6 +15,7 @@ from advisor import __version__
 from advisor.aircraft.aircraft import Aircraft
 from advisor.analysis.axis_flown import compare_side_flown
 from advisor.analysis.marks_file import SINCE_1970_S, began_s
+from advisor.analysis.vibration import FieldSum, Vibration, vibration_of
 from advisor.analysis.whole_flights import WholeFlights, holds_no_test, read_whole
 from advisor.cli.doctor import examine_log
 from advisor.cli.options import LogsAsked
@@ -36,6 +37,7 @@ def gather(
     with_gap: bool,
     tell: Progress = lambda *_: None,
     command: str | None = None,
+    fields: Mapping[Path, tuple[FieldSum, ...]] | None = None,
 ) -> tuple[Content, list[str]]:
     """Return the content of the page, and sentences on logs that do not count.
 
@@ -43,6 +45,9 @@ def gather(
     ----------
     command
         Command line that repeats the page; None for the command line of this process.
+
+    fields
+        Fields that are asked for by name, by the path of the log.
 
     Raises
     ------
@@ -71,6 +76,8 @@ def gather(
         if with_gap and not holds_no_test(flights.left_out)
         else None,
         begun=tuple(map(_date, flights.logs)),
+        fields=tuple((fields or {}).get(log, ()) for log in flights.logs),
+        vibration=tuple(_vibration(log, aircraft) for log in flights.logs),
         origin=Origin(
             _hashes(flights, asked.aircraft_file),
             dict(_versions()),
@@ -78,6 +85,13 @@ def gather(
         ),
     )
     return content, said
+
+
+def _vibration(log: Path, aircraft: Aircraft) -> Vibration | None:
+    try:
+        return vibration_of(log, aircraft.columns)
+    except UnusableInputError:
+        return None
 
 
 def _examined(log: Path, aircraft: Aircraft, target_system: int | None) -> Document:

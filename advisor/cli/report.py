@@ -22,8 +22,15 @@ _NEEDED = ("jinja2", "matplotlib")
     type=click.Choice(["html", "md"]),
     help="Format of the page. Default: md if the file ends in .md, else html.",
 )
+@click.option(
+    "--field",
+    "names",
+    multiple=True,
+    metavar="MESSAGE.FIELD[+...]",
+    help="Draw a field of the log, or a sum such as RCOU.C1+RCOU.C3. All fields share one chart. Repeatable.",
+)
 @click.option("--gap", "with_gap", is_flag=True, help="Diagnose the sim-to-real gap as well.")
-def command(asked: LogsAsked, out: Path, form: str | None, with_gap: bool) -> int:
+def command(asked: LogsAsked, out: Path, form: str | None, names: tuple[str, ...], with_gap: bool) -> int:
     """Write one self-contained page about a flight: verdicts, fits, estimates, flying qualities, telemetry.
 
     The page needs no network and no script, and prints on A4. Several logs are one campaign.
@@ -33,16 +40,19 @@ def command(asked: LogsAsked, out: Path, form: str | None, with_gap: bool) -> in
       advisor report flight.tlog --aircraft my-aircraft.yaml -o report.html
       advisor report battery-1.tlog battery-2.bin --gap -o report.html
       advisor report flight.tlog --format md -o report.md
+      advisor report flight.bin --field ATT.Roll --field RCOU.C1+RCOU.C3 -o report.html
       advisor report flight.tlog --term "M:q*abs(q)" -o report.html
     """
     _refuse(asked.inputs, out)
     aircraft = asked.read_aircraft()
+    from advisor.analysis.vibration import field_sums
     from advisor.cli.page_content import gather
     from advisor.process.atomic_file import write_atomically
     from advisor.report.page.render import page
 
     with Stages() as tell:
-        content, said = gather(asked, aircraft, with_gap, tell)
+        fields = {log: field_sums(log, names) for log in asked.logs}
+        content, said = gather(asked, aircraft, with_gap, tell, fields=fields)
         tell("drawing the page", 0.9)
         markdown = form == "md" or (form is None and out.suffix.lower() == ".md")
         with writing("-o", out):

@@ -148,7 +148,7 @@ def _first(case: Case) -> Fit | None:
 def _as_given(case: Case, chosen: Sequence[AxisModel]) -> Fit:
     """Return the simulator as given, with the natural numbers of telemetry that the last model finds.
 
-    Beside the simulator's own derivatives a nuisance parameter would take on the effect that the simulator
+    Fitted to the simulator's derivatives, a nuisance parameter would take on the effect that the simulator
     lacks.
     """
     last = chosen[-1].fit

@@ -42,8 +42,8 @@ LIKELY = 0.01
 SEARCHES = 4
 """Numerical: largest number of searches for the plain model, each from the likeliest effect's derivatives."""
 _STEPS = 2
-"""Numerical: number of further steps of a model: fits of a nonlinear term, each along the motion of the fit
-before, and Gauss-Newton steps from the optimum in white noise to that in gusts."""
+"""Numerical: number of further fits of a nonlinear term, each along the motion of the fit before. It is also
+the number of Gauss-Newton steps from the optimum in white noise to that in gusts."""
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -13,7 +13,8 @@ from advisor.flight.signals.messages import Columns, joined
 from advisor.mavlink.logs.kinds import recognised
 from advisor.mavlink.logs.logs import open_log
 from advisor.mavlink.logs.unpack import beginning_of, unpacked
-from advisor.mavlink.records.stretches import RecordTable, read_stretches
+from advisor.mavlink.records.record_scan import FMT, FMT_LENGTH, windows
+from advisor.mavlink.records.stretches import DEFINITION_LAYOUT, RecordTable, layout_of, read_stretches
 from advisor.mavlink.wire.definitions import DEFINITIONS
 from advisor.process.arrays import FloatArray
 
@@ -147,3 +148,28 @@ def _raw(t: FloatArray, fields: Mapping[str, NDArray[Any]]) -> RawTable:
         if name not in _STAMPS and _is_numeric(values)
     }
     return RawTable(t[order], numbers)
+
+
+def names_in(path: Path) -> dict[str, tuple[str, ...]]:
+    """Return the fields of each message in a log, by the message's name.
+
+    Raises
+    ------
+    UnusableInputError
+        The log cannot be read.
+    """
+    if not is_dataflash(path):
+        fields: dict[str, tuple[str, ...]] = {}
+        for batch in open_log(path):
+            fields |= {part.name: tuple(part.fields) for part in batch if part.name not in fields}
+        return fields
+    defined: dict[str, tuple[str, ...]] = {}
+    with unpacked(path, beginning_of(path)) as log:
+        for stream, starts, _ in windows(log):
+            for at in starts[stream[starts + 2] == FMT].tolist():
+                body = stream[at + 3 : at + FMT_LENGTH].tobytes()
+                definition = np.frombuffer(body, dtype=DEFINITION_LAYOUT)[0]
+                layout, _ = layout_of(definition)
+                if layout is not None and layout.names:
+                    defined[definition["name"].decode("ascii", "replace")] = layout.names
+    return defined

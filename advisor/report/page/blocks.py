@@ -6,6 +6,7 @@ from functools import wraps
 from typing import Any, Literal
 
 from advisor.aircraft.aircraft import Aircraft
+from advisor.analysis.vibration import FieldSum, Vibration
 from advisor.campaign.state import CampaignState
 from advisor.flight.signals.track import PowerOn
 from advisor.report.text import Table
@@ -45,6 +46,10 @@ class Content:
     origin: Origin
     begun: tuple[str, ...] = ()
     """Date and time at which each log began."""
+    vibration: tuple[Vibration | None, ...] = ()
+    """Vibration of each log; None for an unreadable log."""
+    fields: tuple[tuple[FieldSum, ...], ...] = ()
+    """Fields of each log that were asked for by name."""
 
 
 @dataclass(frozen=True, slots=True)

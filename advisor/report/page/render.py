@@ -1,13 +1,18 @@
 """The page of a flight from its headline to its appendix, as HTML or Markdown."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from functools import partial
 from importlib.resources import files
 from typing import Literal
 
+import numpy as np
 from jinja2 import Environment, FunctionLoader, StrictUndefined
 from markupsafe import Markup
+from matplotlib.figure import Figure as Drawing
+from matplotlib.ticker import FuncFormatter
 
+from advisor.analysis.vibration import FieldSum, Spectrum, Vibration
+from advisor.flight.signals.record import Channel
 from advisor.gap.effects import EFFECTS
 from advisor.oem.notes import FOR_THE_FILE
 from advisor.process.parts import FailedPart, attempt
@@ -16,6 +21,8 @@ from advisor.report.page.blocks import (
     Block,
     Content,
     Document,
+    Figure,
+    Gallery,
     Paragraph,
     Part,
     Section,
@@ -23,14 +30,14 @@ from advisor.report.page.blocks import (
     listing,
     section,
 )
-from advisor.report.page.drawing import LAYER
+from advisor.report.page.drawing import BLACK, BLUE, GREY, LAYER, ORANGE, picture
 from advisor.report.page.estimates import criterion, estimates, maneuvers
 from advisor.report.page.fits import fits
-from advisor.report.page.flight_picture import flight_picture
+from advisor.report.page.flight_picture import flight_picture, thinned
 from advisor.report.page.flying_qualities import decided, flying, lateral
 from advisor.report.page.gap import gap, glance
 from advisor.report.text import Table, channel_table, joint_table, message_table
-from advisor.words.quantities import CHANNELS
+from advisor.words.quantities import CHANNELS, CLOCK, clock
 
 
 @section("telemetry", "Telemetry")
@@ -79,6 +86,85 @@ def provenance(content: Content) -> Section:
             Verbatim(origin.command),
         ),
     )
+
+
+_LOOKS = ((BLUE, "-"), (ORANGE, "--"), (BLACK, ":"), (GREY, "-."))
+_BINS = 500
+"""Number of bins in which a field is drawn."""
+_SCALE_IN = 0.6
+"""Width of the scale of each field after the first, inches."""
+_WIDTH_IN = 7.4
+
+
+@section("fields", "Fields of the log")
+def fields(content: Content) -> Iterator[Block]:
+    """Yield one chart of each log, in which each field has its own scale."""
+    for flight, (name, asked) in enumerate(zip(content.names, content.fields, strict=False)):
+        if asked:
+            drawn = picture(f"fields-{flight}", _WIDTH_IN, 3.2, _paint, asked)
+            caption = f"{name}: {', '.join(field.name for field in asked)}, in the log's units."
+            yield Gallery((Figure(drawn, caption),))
+
+
+def _paint(drawing: Drawing, asked: Sequence[FieldSum]) -> None:
+    first = drawing.subplots()
+    first.set_xlabel(f"time ({CLOCK})")
+    first.xaxis.set_major_formatter(FuncFormatter(lambda t, _: clock(t)))
+    for k, field in enumerate(asked):
+        axes = first if k == 0 else first.twinx()
+        colour, style = _LOOKS[k % len(_LOOKS)]
+        whole = np.isfinite(field.y)
+        t, y = thinned(Channel(field.name, field.t[whole], field.y[whole]), _BINS)
+        axes.plot(t, y, color=colour, linestyle=style, linewidth=0.8)
+        axes.set_ylabel(field.name, color=colour)
+        axes.tick_params(axis="y", colors=colour)
+        if k:
+            axes.grid(visible=False)
+            axes.spines["right"].set_visible(True)
+            axes.spines["right"].set_position(("outward", 72.0 * _SCALE_IN * (k - 1)))
+
+
+_AXES = (("x", BLUE, "-"), ("y", ORANGE, "--"), ("z", BLACK, ":"))
+
+
+@section("vibration", "Vibration")
+def vibration(content: Content) -> Iterator[Block]:
+    """Yield spectra, their root mean squares, and clipped samples, log by log."""
+    for flight, measured in enumerate(content.vibration):
+        if measured is None or not (measured.spectra or measured.clipped):
+            continue
+        if measured.spectra:
+            yield from _shown(flight, content.names[flight], measured.spectra)
+        yield Paragraph(_clipped(measured))
+
+
+def _shown(flight: int, name: str, spectra: Sequence[Spectrum]) -> Iterator[Block]:
+    caption = (
+        f"{name}. Power spectral density of x (solid), y (dashed) and z (dotted); median of the segments."
+    )
+    broad = picture(f"vibration-{flight}", 7.4, 1.9 * len(spectra) + 0.3, _paint_spectra, spectra)
+    yield Gallery((Figure(broad, caption),))
+    head = ("sensor", "x", "y", "z", "unit", "highest Hz shown")
+    rows = tuple((s.name, *(f"{v:.3g}" for v in s.rms), s.unit, f"{s.highest_hz:.1f}") for s in spectra)
+    title = f"Root mean square of {name} without the mean."
+    yield Table(f"vibration-rms-{flight}", title, head, rows, frozenset({1, 2, 3, 5}))
+
+
+def _clipped(measured: Vibration) -> str:
+    if not measured.clipped:
+        return "The log has no counts of clipped samples."
+    return f"Clipped samples within the log: {', '.join(f'{n} {k}' for n, k in measured.clipped.items())}."
+
+
+def _paint_spectra(drawing: Drawing, spectra: Sequence[Spectrum]) -> None:
+    rows = drawing.subplots(len(spectra), 1, squeeze=False)[:, 0]
+    for axes, psd in zip(rows, spectra, strict=True):
+        for values, (name, colour, style) in zip(psd.density, _AXES, strict=True):
+            axes.semilogy(psd.frequency_hz[1:], values[1:], color=colour, linestyle=style, label=name, lw=0.7)
+        axes.set_title(psd.name, loc="left")
+        axes.set_ylabel(f"({psd.unit})²/Hz")
+    rows[0].legend(loc="upper right", ncols=3)
+    rows[-1].set_xlabel("frequency, Hz")
 
 
 @section("verdict", "Verdict")
@@ -138,8 +224,8 @@ def _criterion(value: float | None, limit: float) -> str:
 
 PageFormat = Literal["html", "md"]
 _PARTS: tuple[Part, ...] = (
-    headline, flight_picture, gap, estimates, criterion, flying, maneuvers, fits, lateral,
-    telemetry, assumptions, provenance,
+    headline, flight_picture, gap, estimates, criterion, flying, maneuvers, fits, lateral, fields,
+    vibration, telemetry, assumptions, provenance,
 )  # fmt: skip
 
 _OF_PITCH = frozenset({estimates, criterion, flying, maneuvers, fits})
