@@ -75,7 +75,7 @@ def posterior_at(fit: Fit, prior: Known, share: float) -> tuple[FloatArray, Floa
 def within_bounds(fit: Fit, information: Information, prior: Known) -> tuple[Information, float]:
     """Return the information with each parameter that ends at a bound integrated out, and the nats of that.
 
-    Such a parameter has an exponential density from its bound on, and the others move as it stays there.
+    Such a parameter has an exponential density inside its bound, and the others move as it stays there.
     """
     matrix, gradient = (np.sum(part, axis=0) for part in information)
     low, high = (bound - fit.values for bound in fit.bounds)
