@@ -8,7 +8,7 @@ import pytest
 
 from advisor.model.outputs import N_PARAMETERS
 from advisor.model.response import respond
-from advisor.oem import rows
+from advisor.oem import surface
 from advisor.oem.estimator import Edges, _by_edges, _edged, large_steps
 from advisor.oem.instrument_columns import instrument_columns
 from advisor.oem.instruments import BY_NAME
@@ -27,7 +27,7 @@ STEP = 1e-6
 @pytest.fixture(autouse=True)
 def fine_grid(monkeypatch):
     """Draw the surface so finely that no line between its points hides a difference."""
-    monkeypatch.setattr(rows, "LONGEST_STEP_S", 1e-3)
+    monkeypatch.setattr(surface, "LONGEST_STEP_S", 1e-3)
 
 
 def problem(lag_s=0.0, held=False, steady=False):
