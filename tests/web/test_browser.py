@@ -60,7 +60,7 @@ def test_two_pages_show_one_campaign_on_one_link_and_nothing_outlives_the_comman
             started = serving.children
             assert sorted(name for _, name in started) == [
                 "advisor.mavlink.link.keeper",
-                "advisor.session.remote",
+                "advisor.session.worker",
                 "advisor.web.viewer",
                 "advisor.web.viewer",
             ]
